@@ -1,0 +1,7 @@
+//! The vocabulary of Steadfast as plain data: what a system is made of, before anything runs.
+//!
+//! Nothing here reads files, clocks or devices. `system-profile` produces these values from XML,
+//! the container consumes them.
+
+pub mod life_cycle;
+pub mod specification;
