@@ -5,3 +5,4 @@
 
 pub mod life_cycle;
 pub mod specification;
+pub mod world;
