@@ -1,0 +1,24 @@
+//! Reads the XML files of Steadfast and OPRoS into the vocabulary of `system-model`.
+//!
+//! Bytes are decoded, parsed into a small tree that remembers where everything stood, and made
+//! typed once. Every problem of a file is collected with its place and a line that says what to do.
+//!
+//! A reader for one more kind of file is a function over [`Document`] and [`Node`]; the example at
+//! [`Document`] shows one.
+
+mod decode;
+mod document;
+mod node;
+pub mod parse;
+mod problem;
+mod source;
+mod suggest;
+pub mod tree;
+mod value;
+mod well_formed;
+
+pub use document::{Document, MAX_FILE_SIZE};
+pub use node::Node;
+pub use problem::{MAX_PROBLEMS_PER_FILE, Problem, ProblemLog, Severity};
+pub use source::Source;
+pub use value::{Number, Value};
