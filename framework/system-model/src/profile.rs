@@ -17,7 +17,7 @@ pub struct Located<T> {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Profile {
     /// `component_profile`.
-    Component(ComponentProfile),
+    Component(Box<ComponentProfile>),
     /// `package_profile`, formerly `application_profile`.
     Application(ApplicationProfile),
     /// `composite_component_profile`.

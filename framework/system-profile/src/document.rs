@@ -177,6 +177,13 @@ impl Document {
         self.log.has_errors()
     }
 
+    /// Adds an error about the outermost element.
+    pub fn report_root(&self, message: impl Into<String>, help: &str) {
+        let span = self.root.as_ref().map(|root| root.name_span.clone());
+        self.log
+            .error(span.unwrap_or_default(), message, Some(help.to_owned()));
+    }
+
     /// Adds a problem with a text that was read from this file.
     pub fn report(
         &self,

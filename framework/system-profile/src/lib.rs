@@ -6,19 +6,27 @@
 //! A reader for one more kind of file is a function over [`Document`] and [`Node`]; the example at
 //! [`Document`] shows one.
 
+mod check;
 mod decode;
 mod document;
 mod node;
 pub mod parse;
 mod problem;
+mod readers;
+mod reading;
+mod resolve;
 mod source;
 mod suggest;
 pub mod tree;
 mod value;
 mod well_formed;
 
+pub use check::{FileReport, check_file};
 pub use document::{Document, MAX_FILE_SIZE};
 pub use node::Node;
 pub use problem::{MAX_PROBLEMS_PER_FILE, Problem, ProblemLog, Severity};
+pub use readers::{PROFILE_ROOTS, read_profile};
+pub use reading::reading;
+pub use resolve::{LoadOptions, LoadOutcome, load_application};
 pub use source::Source;
 pub use value::{Number, Value};

@@ -1,0 +1,74 @@
+//! One reader for each kind of profile: element in, typed profile out, problems in the log.
+
+mod application;
+mod component;
+mod data_type;
+mod execution;
+mod header;
+mod ports;
+mod project;
+mod service_type;
+mod system;
+
+use system_model::profile::Profile;
+
+use crate::document::Document;
+
+/// The roots that [`read_profile`] understands.
+pub const PROFILE_ROOTS: [&str; 9] = [
+    "component_profile",
+    "package_profile",
+    "application_profile",
+    "composite_component_profile",
+    "service_port_type_profile",
+    "data_type",
+    "system_config",
+    "system_profile",
+    "OPRoSProject",
+];
+
+/// Elements of the fault-tolerance dialect. They may stand inline in profiles, and are read
+/// together with the rule files, not here.
+pub(crate) const FAULT_TOLERANCE: [&str; 24] = [
+    "actuator",
+    "backup",
+    "confirm",
+    "dependency",
+    "estimator",
+    "exception",
+    "fault",
+    "freshness",
+    "heartbeat",
+    "isolation",
+    "monitor",
+    "overrun",
+    "process_model",
+    "rate_of_change",
+    "recovery",
+    "resurrect",
+    "secondary",
+    "severity",
+    "stuck",
+    "validation",
+    "validity",
+    "voting",
+    "watchdog",
+    "evaluator",
+];
+
+/// Makes a document typed. A profile with errors is still returned, as far as it could be
+/// understood; ask [`Document::has_errors`] before it is used.
+pub fn read_profile(document: &Document) -> Option<Profile> {
+    let root = document.root(&PROFILE_ROOTS)?;
+    let profile = match root.name() {
+        "component_profile" => Profile::Component(Box::new(component::read(&root))),
+        "composite_component_profile" => Profile::Composite(application::read_composite(&root)),
+        "service_port_type_profile" => Profile::ServiceTypes(service_type::read(&root)),
+        "data_type" => Profile::DataTypes(data_type::read(&root)),
+        "system_config" | "system_profile" => Profile::System(system::read(&root)),
+        "OPRoSProject" => Profile::Project(project::read(&root)),
+        _ => Profile::Application(application::read(&root)),
+    };
+    root.finish();
+    Some(profile)
+}
