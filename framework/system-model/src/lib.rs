@@ -4,5 +4,6 @@
 //! the container consumes them.
 
 pub mod life_cycle;
+pub mod profile;
 pub mod specification;
 pub mod world;
