@@ -1,5 +1,6 @@
 //! The decoded text of one file, and the way from a byte offset to the line and column of a person.
 
+use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -11,7 +12,6 @@ use system_model::specification::Place;
 const CHARACTER_INDEX_STEP: usize = 1024;
 
 /// The decoded text of one file.
-#[derive(Debug)]
 pub struct Source {
     path: PathBuf,
     text: String,
@@ -103,6 +103,13 @@ impl Source {
                 .iter()
                 .filter(|byte| starts_a_character(**byte))
                 .count()
+    }
+}
+
+/// Only the name: a problem holds its source, and printing it must not print the whole file.
+impl fmt::Debug for Source {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.debug_tuple("Source").field(&self.path).finish()
     }
 }
 

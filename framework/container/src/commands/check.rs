@@ -1,0 +1,236 @@
+//! `steadfast check`: every problem of profiles, applications and what they refer to.
+
+use std::collections::HashSet;
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{Args, ValueEnum};
+use miette::{GraphicalReportHandler, GraphicalTheme};
+use serde_json::{Value, json};
+use system_profile::{FileReport, LoadOptions, Problem, Severity, check_file};
+
+/// All is well.
+const GOOD: u8 = 0;
+/// A file has an error, or a warning that counts.
+const PROBLEMS: u8 = 1;
+/// A file is missing or cannot be read at all.
+const CANNOT_READ: u8 = 2;
+
+/// Folders inside each other; a deeper tree is a loop of links or a mistake.
+const MAX_FOLDER_DEPTH: usize = 32;
+
+/// What `steadfast check` is asked to do.
+#[derive(Debug, Args)]
+pub struct CheckArguments {
+    /// XML files to check; a folder stands for all XML files in it
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    format: Format,
+    /// Warnings count as problems
+    #[arg(long)]
+    strict: bool,
+    /// Add the facts found in each file (with --format json)
+    #[arg(long)]
+    reading: bool,
+    /// Also look for referenced files in this folder; may be given several times
+    #[arg(long = "search-path", value_name = "FOLDER")]
+    search_paths: Vec<PathBuf>,
+}
+
+/// How the result is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// For people: each problem with the offending text underlined
+    Human,
+    /// For programs: one JSON object
+    Json,
+}
+
+/// Checks the files and writes the result to standard output.
+///
+/// The exit code is 0 if all is well, 1 if there are problems, 2 if a file cannot be read.
+pub fn run(arguments: &CheckArguments) -> ExitCode {
+    let reports = reports(arguments);
+    let written = match arguments.format {
+        Format::Human => write_human(&reports),
+        Format::Json => write_json(&reports, arguments.reading),
+    };
+    match written {
+        // Whoever reads the output has seen enough; the exit code still tells the result.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {}
+        Err(error) => {
+            let _nobody_left_to_tell = writeln!(
+                io::stderr(),
+                "steadfast check: the result cannot be written: {error}"
+            );
+            return ExitCode::from(CANNOT_READ);
+        }
+        Ok(()) => {}
+    }
+    ExitCode::from(exit_code(&reports, arguments.strict))
+}
+
+fn reports(arguments: &CheckArguments) -> Vec<FileReport> {
+    let options = LoadOptions {
+        search_paths: arguments.search_paths.clone(),
+        dangling: Severity::Warning,
+    };
+    let mut named = Vec::new();
+    for path in &arguments.files {
+        if path.is_dir() {
+            collect(path, 0, &mut named);
+        } else {
+            named.push(path.clone());
+        }
+    }
+    let identity = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let mut reported: HashSet<PathBuf> = named.iter().map(|path| identity(path)).collect();
+    let mut reports = Vec::new();
+    for path in &named {
+        let mut found = check_file(path, &options).into_iter();
+        reports.extend(found.next());
+        // A referenced file that is named as well has, or will have, a report of its own.
+        reports.extend(found.filter(|report| reported.insert(identity(&report.path))));
+    }
+    reports
+}
+
+/// All XML files of a folder, sorted. A folder that cannot be listed is left to the opener of files,
+/// which says why.
+fn collect(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) {
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        files.push(folder.to_owned());
+        return;
+    };
+    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    paths.sort();
+    for path in paths {
+        if path.is_dir() {
+            if depth < MAX_FOLDER_DEPTH {
+                collect(&path, depth + 1, files);
+            }
+        } else if looks_like_xml(&path) {
+            files.push(path);
+        }
+    }
+}
+
+/// Named `*.xml`, or without an ending and beginning with an XML declaration: a few of the public
+/// profiles were saved that way.
+fn looks_like_xml(path: &Path) -> bool {
+    const DECLARATION: &[u8] = b"<?xml";
+    match path.extension() {
+        Some(ending) => ending.eq_ignore_ascii_case("xml"),
+        None if path.is_file() => {
+            let mut head = [0; DECLARATION.len()];
+            let read = File::open(path).and_then(|mut file| file.read_exact(&mut head));
+            read.is_ok() && head == DECLARATION
+        }
+        None => false,
+    }
+}
+
+fn exit_code(reports: &[FileReport], strict: bool) -> u8 {
+    let counts = |problem: &Problem| strict || problem.severity == Severity::Error;
+    if reports.iter().any(|report| !report.readable) {
+        CANNOT_READ
+    } else if reports
+        .iter()
+        .flat_map(|report| &report.problems)
+        .any(counts)
+    {
+        PROBLEMS
+    } else {
+        GOOD
+    }
+}
+
+fn write_json(reports: &[FileReport], with_reading: bool) -> io::Result<()> {
+    let files: Value = reports
+        .iter()
+        .map(|report| {
+            let mut file = json!({
+                "path": report.path.to_string_lossy(),
+                "sha256": report.sha256,
+                "problems": report.problems.iter().map(problem_as_json).collect::<Value>(),
+            });
+            if with_reading {
+                file["reading"] = report.reading.clone();
+            }
+            file
+        })
+        .collect();
+    let mut output = io::BufWriter::new(io::stdout().lock());
+    serde_json::to_writer_pretty(&mut output, &json!({ "files": files }))?;
+    writeln!(output)?;
+    output.flush()
+}
+
+fn problem_as_json(problem: &Problem) -> Value {
+    json!({
+        "severity": problem.severity.name(),
+        "line": problem.place.line,
+        "column": problem.place.column,
+        "message": problem.message,
+        "help": problem.help,
+    })
+}
+
+fn write_human(reports: &[FileReport]) -> io::Result<()> {
+    let handler = handler();
+    let mut output = io::BufWriter::new(io::stdout().lock());
+    for problem in reports.iter().flat_map(|report| &report.problems) {
+        let mut text = String::new();
+        if handler.render_report(&mut text, problem).is_err() {
+            text = format!("{}: {problem}\n", problem.severity.name());
+        }
+        if !problem.has_snippet() {
+            writeln!(output, "{}", problem.place)?;
+        }
+        writeln!(output, "{}", text.trim_end())?;
+        writeln!(output)?;
+    }
+    writeln!(output, "{}", summary(reports))?;
+    output.flush()
+}
+
+/// Colours and box characters only where a terminal shows them.
+fn handler() -> GraphicalReportHandler {
+    use std::io::IsTerminal;
+    let handler = GraphicalReportHandler::new().with_context_lines(1);
+    if io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none() {
+        handler
+    } else {
+        handler.with_theme(GraphicalTheme::unicode_nocolor())
+    }
+}
+
+fn summary(reports: &[FileReport]) -> String {
+    let count = |severity: Severity| {
+        let problems = reports.iter().flat_map(|report| &report.problems);
+        problems
+            .filter(|problem| problem.severity == severity)
+            .count()
+    };
+    let unreadable = reports.iter().filter(|report| !report.readable).count();
+    let mut parts = vec![
+        counted(reports.len(), "file"),
+        counted(count(Severity::Error), "error"),
+        counted(count(Severity::Warning), "warning"),
+    ];
+    if unreadable > 0 {
+        parts.push(format!("{} could not be read", counted(unreadable, "file")));
+    }
+    parts.join(", ")
+}
+
+fn counted(count: usize, what: &str) -> String {
+    match count {
+        1 => format!("1 {what}"),
+        _ => format!("{count} {what}s"),
+    }
+}
