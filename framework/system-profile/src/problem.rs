@@ -14,9 +14,6 @@ use crate::source::Source;
 /// ones and asks again, and a hostile file must not fill the memory with complaints about itself.
 pub const MAX_PROBLEMS_PER_FILE: usize = 100;
 
-/// A longer line is not shown under its problem; it would fill the terminal.
-const MAX_LINE_SHOWN: usize = 400;
-
 /// How much a problem matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
@@ -88,7 +85,7 @@ impl Problem {
 
     /// Whether the offending text can be shown under the message.
     pub fn has_snippet(&self) -> bool {
-        self.place.line > 0 && self.source.line_length(self.span.start) <= MAX_LINE_SHOWN
+        self.place.line > 0 && self.source.is_showable(self.span.start)
     }
 
     fn says_the_same(&self, other: &Self) -> bool {

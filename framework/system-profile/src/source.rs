@@ -11,6 +11,9 @@ use system_model::specification::Place;
 /// the same in a file of one enormous line.
 const CHARACTER_INDEX_STEP: usize = 1024;
 
+/// A longer line is not shown under its problem; it would fill the terminal.
+const MAX_LINE_SHOWN: usize = 400;
+
 /// The decoded text of one file.
 pub struct Source {
     path: PathBuf,
@@ -83,13 +86,19 @@ impl Source {
         byte_of(first)..byte_of(first.saturating_add(length))
     }
 
-    /// The length in bytes of the line that holds `offset`.
-    pub(crate) fn line_length(&self, offset: usize) -> usize {
+    /// Whether the line at `offset` and its neighbours can be shown on a terminal: not too long, and
+    /// without control characters, which a terminal would obey.
+    pub(crate) fn is_showable(&self, offset: usize) -> bool {
         let line = self
             .line_starts
             .partition_point(|start| *start <= offset.min(self.text.len()));
-        let end = self.line_starts.get(line).copied();
-        end.unwrap_or(self.text.len()) - self.line_starts[line - 1]
+        let bound = |line: usize| self.line_starts.get(line).copied();
+        let start = bound(line.saturating_sub(2)).unwrap_or(0);
+        let end = bound(line + 1).unwrap_or(self.text.len());
+        self.text[start..end].lines().all(|line| {
+            line.len() <= MAX_LINE_SHOWN
+                && !line.contains(|c: char| c.is_control() && c != '\t' && c != '\r')
+        })
     }
 
     fn characters_up_to(&self, offset: usize) -> usize {
@@ -170,6 +179,13 @@ mod tests {
             ..Place::default()
         };
         assert_eq!(source.span(&beyond, 4), 2..2);
+    }
+
+    #[test]
+    fn a_terminal_is_shown_neither_long_lines_nor_control_characters() {
+        assert!(Source::new("f.xml", "<a>\r\n\t<b/>\n").is_showable(3));
+        assert!(!Source::new("f.xml", "<a>\n\u{1b}[2J").is_showable(0));
+        assert!(!Source::new("f.xml", "x".repeat(MAX_LINE_SHOWN + 1)).is_showable(0));
     }
 
     #[test]

@@ -43,9 +43,10 @@ pub fn help<'a>(
     })
 }
 
-/// A text as it is quoted in a message: one line, not too long.
+/// A text as it is quoted in a message: one line, not too long, nothing that a terminal obeys.
 pub fn quoted(text: &str) -> String {
-    let line: String = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let line = line.replace(char::is_control, "\u{FFFD}");
     shorten(&line, MAX_QUOTED_LENGTH)
 }
 
@@ -82,6 +83,7 @@ mod tests {
     #[test]
     fn quotes_are_short_and_of_one_line() {
         assert_eq!(quoted("a\n  b"), "a b");
+        assert_eq!(quoted("a\u{1b}[2J"), "a\u{FFFD}[2J");
         assert_eq!(quoted(&"글".repeat(100)).chars().count(), 61);
     }
 }
