@@ -4,6 +4,8 @@
 //! the bytes that a camera sends. Both ends of each line, the simulated device and the driver
 //! component, use this crate; nothing here opens a device or reads a clock.
 
+#![forbid(unsafe_code)]
+
 pub mod camera_stream;
 pub mod serial_line;
 mod start_mark;
