@@ -119,16 +119,16 @@ fn decode_as(bytes: &[u8], encoding: &'static Encoding, declared: Option<&str>) 
         let help = match declared {
             Some(name) => format!(
                 "save the file as {name}, or declare the encoding it was saved in; \
-                 each such place was read as U+FFFD"
+                 they were read as U+FFFD"
             ),
             None => "declare the encoding that the file was saved in, for example \
-                     <?xml version=\"1.0\" encoding=\"euc-kr\"?>; each such place was read as U+FFFD"
+                     <?xml version=\"1.0\" encoding=\"euc-kr\"?>; they were read as U+FFFD"
                 .into(),
         };
         oddities.push(Oddity {
             span: start..start + char::REPLACEMENT_CHARACTER.len_utf8(),
             message: format!(
-                "bytes that are no {} text, in {count} places, this is the first",
+                "bytes that are no {} text; the first of {count} such places",
                 encoding.name()
             ),
             help,

@@ -17,6 +17,7 @@ mod reading;
 mod resolve;
 mod source;
 mod suggest;
+mod syntax;
 pub mod tree;
 mod value;
 mod well_formed;

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use quick_xml::events::attributes::AttrError;
+use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
-use quick_xml::{Error, Reader};
 
 use crate::suggest::quoted;
+use crate::syntax;
 use crate::tree::{Attribute, Element};
 use crate::well_formed::{self, Malformed};
 
@@ -76,7 +76,7 @@ impl<'a> Builder<'a> {
                 Ok(event) => event,
                 Err(error) => {
                     let at = position(reader.error_position());
-                    return Err(self.malformed_by(&error, at));
+                    return Err(syntax::offence(self.text, &error, at, self.open.last()));
                 }
             };
             let span = start..position(reader.buffer_position());
@@ -103,8 +103,13 @@ impl<'a> Builder<'a> {
                         "remove what stands before <?xml, blanks and empty lines too",
                     ));
                 }
+                Event::Decl(declaration) => {
+                    if let Err(error) = declaration.version() {
+                        return Err(syntax::offence(self.text, &error, span.start, None));
+                    }
+                }
                 Event::Eof => return self.finish(),
-                Event::Decl(_) | Event::Comment(_) | Event::PI(_) | Event::DocType(_) => {}
+                Event::Comment(_) | Event::PI(_) | Event::DocType(_) => {}
             }
         }
     }
@@ -158,7 +163,7 @@ impl<'a> Builder<'a> {
         let mut attributes = Vec::new();
         let mut key_start = tag_start + tag.name().0.len();
         for found in tag.attributes() {
-            let found = found.map_err(|error| malformed_attribute(&error, tag_start))?;
+            let found = found.map_err(|error| syntax::attribute_offence(&error, tag_start))?;
             let name = found.key.0;
             let rest = &self.text[key_start..];
             let blanks = rest.len() - rest.trim_start().len();
@@ -248,35 +253,6 @@ impl<'a> Builder<'a> {
             )
         })
     }
-
-    fn malformed_by(&self, error: &Error, at: usize) -> Malformed {
-        let rest = self.text.get(at..).unwrap_or_default();
-        let length = rest.chars().next().map_or(0, char::len_utf8);
-        let help = match (error, self.open.last()) {
-            (Error::IllFormed(_), Some(open)) => {
-                format!("the innermost open element is <{}>", quoted(&open.name))
-            }
-            (Error::Syntax(_), _) => "the file ends too early: is it whole?".into(),
-            _ => "correct the file, or export it again from its tool".into(),
-        };
-        Malformed::new(at..at + length, quoted(&error.to_string()), help)
-    }
-}
-
-fn malformed_attribute(error: &AttrError, tag_start: usize) -> Malformed {
-    let (offset, message) = match error {
-        AttrError::ExpectedEq(at) => (at, "an attribute without `=`"),
-        AttrError::ExpectedValue(at) => (at, "an attribute without a value"),
-        AttrError::UnquotedValue(at) => (at, "an attribute value without quotes"),
-        AttrError::ExpectedQuote(at, _) => (at, "an attribute value without a closing quote"),
-        AttrError::Duplicated(at, _) => (at, "an attribute that the element already has"),
-    };
-    let at = tag_start + offset;
-    Malformed::new(
-        at..at + 1,
-        message,
-        "attributes are written name=\"value\", each name once",
-    )
 }
 
 fn position(offset: u64) -> usize {

@@ -234,3 +234,59 @@ fn counted(count: usize, what: &str) -> String {
         _ => format!("{count} {what}s"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn report(severities: &[Severity], readable: bool) -> FileReport {
+        let source = std::sync::Arc::new(system_profile::Source::new("f.xml", "<a>\n</a>"));
+        let problem = |severity: &Severity| {
+            Problem::new(*severity, &source, 4..8, "odd", Some("mend it".into()))
+        };
+        FileReport {
+            path: "f.xml".into(),
+            sha256: None,
+            readable,
+            problems: severities.iter().map(problem).collect(),
+            reading: Value::Null,
+        }
+    }
+
+    #[test]
+    fn the_worst_file_decides_the_exit_code() {
+        use Severity::{Error, Warning};
+        let code = |strict, severities: &[Severity]| {
+            exit_code(&[report(&[], true), report(severities, true)], strict)
+        };
+        assert_eq!(code(true, &[]), GOOD);
+        assert_eq!(code(false, &[Warning]), GOOD);
+        assert_eq!(code(true, &[Warning]), PROBLEMS);
+        assert_eq!(code(false, &[Warning, Error]), PROBLEMS);
+        let unreadable = [report(&[Error], true), report(&[Error], false)];
+        assert_eq!(exit_code(&unreadable, false), CANNOT_READ);
+    }
+
+    #[test]
+    fn a_problem_as_json_has_all_its_keys() {
+        let report = report(&[Severity::Warning], true);
+        assert_eq!(
+            problem_as_json(&report.problems[0]),
+            json!({
+                "severity": "warning", "line": 2, "column": 1, "message": "odd", "help": "mend it"
+            })
+        );
+    }
+
+    #[test]
+    fn the_summary_counts_in_words() {
+        let reports = [
+            report(&[Severity::Error], true),
+            report(&[Severity::Error, Severity::Warning], false),
+        ];
+        assert_eq!(
+            summary(&reports),
+            "2 files, 2 errors, 1 warning, 1 file could not be read"
+        );
+    }
+}

@@ -8,7 +8,8 @@ use system_model::specification::{
     ConnectionSpecification, PortDirection, PortKind, PortReference,
 };
 
-use super::instances::{Port, Scope};
+use super::instances::Scope;
+use super::ports::Port;
 use super::{Assembly, LoadedFile};
 use crate::problem::Severity;
 use crate::suggest::quoted;

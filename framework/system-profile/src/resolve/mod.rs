@@ -5,6 +5,7 @@ mod connections;
 mod coordination;
 mod files;
 mod instances;
+mod ports;
 mod references;
 
 use std::path::{Path, PathBuf};
