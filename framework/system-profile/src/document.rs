@@ -177,6 +177,11 @@ impl Document {
         self.log.has_errors()
     }
 
+    /// Whether further problems would change nothing: the list is full of errors.
+    pub(crate) fn is_given_up(&self) -> bool {
+        !self.log.has_room_for(Severity::Error)
+    }
+
     /// Adds an error about the outermost element.
     pub fn report_root(&self, message: impl Into<String>, help: &str) {
         let span = self.root.as_ref().map(|root| root.name_span.clone());
@@ -192,6 +197,10 @@ impl Document {
         message: impl Into<String>,
         help: Option<String>,
     ) {
+        if !self.log.has_room_for(severity) {
+            self.log.count(severity);
+            return;
+        }
         let source = self.log.source();
         let span = source.span(&text.place, text.value.chars().count().max(1));
         self.log

@@ -6,7 +6,7 @@ use std::ops::Range;
 use system_model::profile::Located;
 use system_model::specification::Place;
 
-use crate::problem::ProblemLog;
+use crate::problem::{ProblemLog, Severity};
 use crate::suggest::{self, quoted};
 use crate::tree::Element;
 use crate::value::Value;
@@ -246,9 +246,9 @@ impl<'a> Node<'a> {
             quoted(name),
             quoted(self.name())
         );
-        let help = match self.log.is_full() {
-            true => None,
-            false => self.help_for(name, asked),
+        let help = match self.log.has_room_for(Severity::Warning) {
+            true => self.help_for(name, asked),
+            false => None,
         };
         self.log.warning(span.clone(), message, help);
     }

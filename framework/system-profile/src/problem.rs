@@ -151,7 +151,8 @@ impl ProblemLog {
         &self.source
     }
 
-    /// Adds a problem; one that is already there is not repeated.
+    /// Adds a problem; one that is already there is not repeated. In a full list an error takes the
+    /// place of the last warning.
     pub fn add(&self, problem: Problem) {
         let mut listed = self.listed.borrow_mut();
         if listed.iter().any(|other| other.says_the_same(&problem)) {
@@ -161,7 +162,22 @@ impl ProblemLog {
             listed.push(problem);
             return;
         }
-        let unlisted = match problem.severity {
+        let warning = listed
+            .iter()
+            .rposition(|other| other.severity > problem.severity);
+        match warning {
+            Some(position) => {
+                self.count(Severity::Warning);
+                listed.remove(position);
+                listed.push(problem);
+            }
+            None => self.count(problem.severity),
+        }
+    }
+
+    /// Counts a problem that is not listed.
+    pub(crate) fn count(&self, severity: Severity) {
+        let unlisted = match severity {
             Severity::Error => &self.unlisted_errors,
             Severity::Warning => &self.unlisted_warnings,
         };
@@ -190,9 +206,11 @@ impl ProblemLog {
         ));
     }
 
-    /// Whether the list is full, so that composing a message is no longer worth while.
-    pub(crate) fn is_full(&self) -> bool {
-        self.listed.borrow().len() >= MAX_PROBLEMS_PER_FILE
+    /// Whether a further problem would still be listed; if not, composing its message is not worth
+    /// while.
+    pub(crate) fn has_room_for(&self, severity: Severity) -> bool {
+        let listed = self.listed.borrow();
+        listed.len() < MAX_PROBLEMS_PER_FILE || listed.iter().any(|other| other.severity > severity)
     }
 
     /// Whether there is any error.
@@ -251,12 +269,19 @@ mod tests {
             log.warning(number..number + 1, "odd", None);
         }
         assert!(!log.has_errors());
-        log.error(0..1, "worse", None);
+        assert!(!log.has_room_for(Severity::Warning));
+        for number in 0..MAX_PROBLEMS_PER_FILE + 1 {
+            assert_eq!(
+                log.has_room_for(Severity::Error),
+                number < MAX_PROBLEMS_PER_FILE
+            );
+            log.error(number..number + 1, "worse", None);
+        }
         assert!(log.has_errors());
         let last = log.problems().pop().unwrap();
         assert_eq!(
             last.message,
-            "1 more errors and 7 more warnings are not listed"
+            "1 more errors and 107 more warnings are not listed"
         );
         assert_eq!(last.severity, Severity::Error);
     }

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 use std::fs::File;
-use std::io::{self, Read, Write};
+use std::io::{self, IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -181,32 +181,38 @@ fn problem_as_json(problem: &Problem) -> Value {
 }
 
 fn write_human(reports: &[FileReport]) -> io::Result<()> {
-    let handler = handler();
+    let colours = io::stdout().is_terminal();
     let mut output = io::BufWriter::new(io::stdout().lock());
-    for problem in reports.iter().flat_map(|report| &report.problems) {
-        let mut text = String::new();
-        if handler.render_report(&mut text, problem).is_err() {
-            text = format!("{}: {problem}\n", problem.severity.name());
-        }
-        if !problem.has_snippet() {
-            writeln!(output, "{}", problem.place)?;
-        }
-        writeln!(output, "{}", text.trim_end())?;
-        writeln!(output)?;
+    for report in reports {
+        write_problems(&mut output, &report.problems, colours)?;
     }
     writeln!(output, "{}", summary(reports))?;
     output.flush()
 }
 
-/// Colours and box characters only where a terminal shows them.
-fn handler() -> GraphicalReportHandler {
-    use std::io::IsTerminal;
+/// Writes problems for people, each with the offending text underlined. `colours` says whether
+/// `output` is a terminal; a person who sets NO_COLOR gets none even there.
+pub fn write_problems(
+    output: &mut impl Write,
+    problems: &[Problem],
+    colours: bool,
+) -> io::Result<()> {
     let handler = GraphicalReportHandler::new().with_context_lines(1);
-    if io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none() {
-        handler
-    } else {
-        handler.with_theme(GraphicalTheme::unicode_nocolor())
+    let handler = match colours && std::env::var_os("NO_COLOR").is_none() {
+        true => handler,
+        false => handler.with_theme(GraphicalTheme::unicode_nocolor()),
+    };
+    for problem in problems {
+        let mut text = String::new();
+        if handler.render_report(&mut text, problem).is_err() {
+            text = format!("{}: {problem}", problem.severity.name());
+        }
+        if !problem.has_snippet() {
+            writeln!(output, "{}", problem.place)?;
+        }
+        writeln!(output, "{}\n", text.trim_end())?;
     }
+    Ok(())
 }
 
 fn summary(reports: &[FileReport]) -> String {

@@ -1,8 +1,12 @@
 //! What all profiles have in common.
 
+use std::collections::HashMap;
+
 use system_model::profile::{Header, Located, Property};
+use system_model::specification::Place;
 
 use crate::node::Node;
+use crate::suggest::quoted;
 
 /// Name, identifier, version and description; the name is mandatory.
 pub(super) fn read(root: &Node<'_>) -> Header {
@@ -62,6 +66,7 @@ fn nameless(node: &Node<'_>) -> Located<String> {
 /// `properties/property` and its other name `exports/property`, in document order.
 pub(super) fn properties(owner: &Node<'_>) -> Vec<Property> {
     let mut properties: Vec<Property> = Vec::new();
+    let mut places = HashMap::new();
     for list in owner.children_of(&["properties", "exports"]) {
         for node in list.children("property") {
             let property = Property {
@@ -70,7 +75,10 @@ pub(super) fn properties(owner: &Node<'_>) -> Vec<Property> {
                 value: node.text().as_str().to_owned(),
             };
             node.finish();
-            warn_of_duplicate(&node, &property, &properties);
+            let Located { value, place } = property.name.clone();
+            if let Some(first) = places.insert(value, place) {
+                warn_of_duplicate(&node, &property, &first);
+            }
             properties.push(property);
         }
         list.finish();
@@ -78,15 +86,11 @@ pub(super) fn properties(owner: &Node<'_>) -> Vec<Property> {
     properties
 }
 
-fn warn_of_duplicate(node: &Node<'_>, property: &Property, earlier: &[Property]) {
-    let same = |other: &&Property| other.name.value == property.name.value;
-    if let Some(first) = earlier.iter().find(same) {
-        node.warning(
-            format!("property {} is set again", property.name.value),
-            Some(format!(
-                "this value wins over the one at {}; remove one of them",
-                first.name.place
-            )),
-        );
-    }
+fn warn_of_duplicate(node: &Node<'_>, property: &Property, first: &Place) {
+    node.warning(
+        format!("property {} is set again", quoted(&property.name.value)),
+        Some(format!(
+            "this value wins over the one at {first}; remove one of them"
+        )),
+    );
 }

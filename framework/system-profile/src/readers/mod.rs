@@ -35,6 +35,7 @@ pub(crate) const FAULT_TOLERANCE: [&str; 24] = [
     "confirm",
     "dependency",
     "estimator",
+    "evaluator",
     "exception",
     "fault",
     "freshness",
@@ -53,7 +54,6 @@ pub(crate) const FAULT_TOLERANCE: [&str; 24] = [
     "validity",
     "voting",
     "watchdog",
-    "evaluator",
 ];
 
 /// Makes a document typed. A profile with errors is still returned, as far as it could be

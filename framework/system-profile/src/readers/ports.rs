@@ -1,11 +1,14 @@
 //! `ports`: what a component exchanges with others.
 
+use std::collections::HashMap;
+
 use system_model::profile::{Located, PortProfile};
-use system_model::specification::{PortDirection, PortKind, PortSpecification, QueuePolicy};
+use system_model::specification::{Place, PortDirection, PortKind, PortSpecification, QueuePolicy};
 
 use super::FAULT_TOLERANCE;
 use super::header::required_text;
 use crate::node::Node;
+use crate::suggest::quoted;
 use crate::value::Value;
 
 /// What a FIFO or LIFO without a size keeps, as the old engine's queues do.
@@ -26,11 +29,19 @@ pub(super) fn read(component: &Node<'_>) -> Vec<PortProfile> {
         return Vec::new();
     };
     let mut ports: Vec<PortProfile> = Vec::new();
+    let mut places: HashMap<String, Place> = HashMap::new();
     for node in list.children_of(&KINDS.map(|(name, _)| name)) {
-        if let Some(port) = read_port(&node) {
-            report_duplicate(&node, &port, &ports);
-            ports.push(port);
+        let Some(port) = read_port(&node) else {
+            continue;
+        };
+        let PortSpecification { name, place, .. } = &port.port;
+        match places.get(name) {
+            Some(first) if !name.is_empty() => report_duplicate(&node, name, first),
+            _ => {
+                places.insert(name.clone(), place.clone());
+            }
         }
+        ports.push(port);
     }
     list.finish();
     ports
@@ -137,18 +148,13 @@ fn queue_size(value: Option<Value<'_>>, policy: QueuePolicy) -> usize {
     default
 }
 
-fn report_duplicate(node: &Node<'_>, port: &PortProfile, earlier: &[PortProfile]) {
-    let name = &port.port.name;
-    let first = earlier.iter().find(|other| other.port.name == *name);
-    if let (Some(first), false) = (first, name.is_empty()) {
-        node.error(
-            format!("a second port of the name {name}"),
-            Some(format!(
-                "the first one is at {}; give each port a name of its own",
-                first.port.place
-            )),
-        );
-    }
+fn report_duplicate(node: &Node<'_>, name: &str, first: &Place) {
+    node.error(
+        format!("a second port of the name {}", quoted(name)),
+        Some(format!(
+            "the first one is at {first}; give each port a name of its own"
+        )),
+    );
 }
 
 /// A kind of port by the word used in `port_type`.

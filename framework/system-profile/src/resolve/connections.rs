@@ -27,6 +27,9 @@ impl Assembly<'_> {
     /// Resolves the connections of one file.
     pub(super) fn connect(&mut self, scope: &Scope, connections: &[PortConnection]) {
         for connection in connections {
+            if scope.file.document.is_given_up() {
+                return;
+            }
             let source = self.port(scope, &connection.source);
             let target = self.port(scope, &connection.target);
             let (Some(source), Some(target)) = (source, target) else {

@@ -24,6 +24,9 @@ impl Assembly<'_> {
     pub(super) fn coordinate(&mut self, scope: &Scope, rules: &[CoordinationRule]) {
         let mut known: HashSet<(&str, &str)> = HashSet::new();
         for rule in rules {
+            if scope.file.document.is_given_up() {
+                return;
+            }
             let source = scope.member(&rule.source).map(components);
             let target = scope.member(&rule.target).map(components);
             let (Some(source), Some(target)) = (source, target) else {
