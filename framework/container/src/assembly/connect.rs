@@ -1,0 +1,322 @@
+//! Connections: first compared on both sides, then made.
+
+use std::sync::Arc;
+
+use system_model::data_type::DataType;
+use system_model::specification::{
+    ApplicationSpecification, ConnectionSpecification, ExecutionKind, PortKind, PortReference,
+    QueuePolicy,
+};
+
+use super::{AssemblyProblem, find_port, list};
+use crate::component::{BoundMethod, ComponentCell, Inbox, PortEnd, Provider};
+use crate::executor::Executor;
+use crate::lane::SETUP_TOKEN;
+use crate::library::{LoadedLibrary, MethodDescription, PortDescription};
+use crate::port::{connection, mailbox};
+use crate::wake::Wake;
+
+/// Events that may wait for one receiver from one sender: two seconds of a sender that raises one
+/// in every cycle of 30 ms.
+const EVENT_QUEUE: usize = 64;
+
+/// Nonblocking calls that may wait for one provider from one caller.
+const CALL_QUEUE: usize = 16;
+
+/// Compares both ends of every connection; all that do not fit.
+pub(super) fn check(
+    specification: &ApplicationSpecification,
+    libraries: &[LoadedLibrary],
+) -> Vec<AssemblyProblem> {
+    let mut problems = Vec::new();
+    for connection in &specification.connections {
+        let source = port_of(libraries, &connection.source);
+        let target = port_of(libraries, &connection.target);
+        let (Some(source), Some(target)) = (source, target) else {
+            // A declared port that the library lacks is reported once, at its declaration.
+            continue;
+        };
+        let mismatch = match connection.kind {
+            PortKind::Data | PortKind::Event => types(source, target),
+            PortKind::Service => methods(source, target),
+        };
+        if let Some((message, help)) = mismatch {
+            problems.push(AssemblyProblem::Connection {
+                place: connection.place.clone(),
+                message: format!("{}: {message}", ends(specification, connection)),
+                help,
+            });
+        }
+    }
+    problems
+}
+
+fn ends(specification: &ApplicationSpecification, connection: &ConnectionSpecification) -> String {
+    let name = |end: &PortReference| {
+        format!(
+            "'{}.{}'",
+            specification.components[end.component].name, end.port
+        )
+    };
+    format!(
+        "connection {} -> {}",
+        name(&connection.source),
+        name(&connection.target)
+    )
+}
+
+fn port_of<'library>(
+    libraries: &'library [LoadedLibrary],
+    end: &PortReference,
+) -> Option<&'library PortDescription> {
+    find_port(&libraries[end.component].description, &end.port)
+}
+
+fn types(source: &PortDescription, target: &PortDescription) -> Option<(String, String)> {
+    let fits = match (&source.data_type, &target.data_type) {
+        (None, None) => true,
+        (Some(source), Some(target)) => source.fits(target),
+        _ => false,
+    };
+    (!fits).then(|| {
+        let message = format!(
+            "the source carries {}, the target takes {}",
+            type_name(source.data_type.as_ref()),
+            type_name(target.data_type.as_ref())
+        );
+        let help = "both must be built with the same definition of the type".to_owned();
+        (message, help)
+    })
+}
+
+fn methods(required: &PortDescription, provided: &PortDescription) -> Option<(String, String)> {
+    for method in &required.methods {
+        let Some(other) = provided_method(provided, method) else {
+            return Some((
+                format!("the provider has no method '{}'", method.name),
+                format!(
+                    "it has {}",
+                    list(provided.methods.iter().map(|method| &method.name))
+                ),
+            ));
+        };
+        let same = same_type(method.request.as_ref(), other.1.request.as_ref())
+            && same_type(method.reply.as_ref(), other.1.reply.as_ref())
+            && method.blocking == other.1.blocking;
+        if !same {
+            return Some((
+                format!(
+                    "method '{}' is declared differently on both sides",
+                    method.name
+                ),
+                "request, reply and blocking must agree".to_owned(),
+            ));
+        }
+    }
+    None
+}
+
+fn provided_method<'library>(
+    provided: &'library PortDescription,
+    method: &MethodDescription,
+) -> Option<(usize, &'library MethodDescription)> {
+    provided
+        .methods
+        .iter()
+        .enumerate()
+        .find(|(_, other)| other.name == method.name)
+}
+
+fn same_type(one: Option<&DataType>, other: Option<&DataType>) -> bool {
+    match (one, other) {
+        (None, None) => true,
+        (Some(one), Some(other)) => one.fits(other),
+        _ => false,
+    }
+}
+
+fn type_name(data_type: Option<&DataType>) -> String {
+    data_type.map_or_else(
+        || "nothing".to_owned(),
+        |data_type| {
+            format!(
+                "'{}' ({} bytes, layout {:x})",
+                data_type.name, data_type.size, data_type.layout_hash
+            )
+        },
+    )
+}
+
+/// Makes all connections. They have been checked, so nothing is left out silently.
+pub(super) fn connect(
+    specification: &ApplicationSpecification,
+    libraries: &[LoadedLibrary],
+    components: &[Arc<ComponentCell>],
+    executors: &[Executor],
+) {
+    for connection in &specification.connections {
+        let wire = Wire {
+            specification,
+            libraries,
+            components,
+            connection,
+            wake: wake_of(executors, connection.target.component),
+        };
+        match connection.kind {
+            PortKind::Data => wire.data(),
+            PortKind::Event => wire.event(),
+            PortKind::Service => wire.service(),
+        }
+    }
+}
+
+/// What wakes the executor of a component, and whether data do.
+fn wake_of(executors: &[Executor], component: usize) -> Option<(Arc<Wake>, ExecutionKind)> {
+    executors
+        .iter()
+        .find(|executor| {
+            executor
+                .members
+                .iter()
+                .any(|member| usize::try_from(member.number) == Ok(component))
+        })
+        .map(|executor| (Arc::clone(&executor.wake), executor.kind))
+}
+
+/// One connection being made.
+struct Wire<'assembly> {
+    specification: &'assembly ApplicationSpecification,
+    libraries: &'assembly [LoadedLibrary],
+    components: &'assembly [Arc<ComponentCell>],
+    connection: &'assembly ConnectionSpecification,
+    wake: Option<(Arc<Wake>, ExecutionKind)>,
+}
+
+impl Wire<'_> {
+    fn data(&self) {
+        let target = &self.connection.target;
+        let declared = self.specification.components[target.component]
+            .ports
+            .iter()
+            .find(|port| port.name == target.port);
+        let (policy, queue_size) =
+            declared.map_or((QueuePolicy::Last, 1), |port| (port.queue, port.queue_size));
+        let size = self.size(&self.connection.source);
+        let (sender, receiver) = connection(policy, queue_size, size);
+        // Data wake only executors that have no period: the others look by themselves.
+        let wake = self
+            .wake
+            .as_ref()
+            .filter(|(_, kind)| *kind == ExecutionKind::Aperiodic)
+            .map(|(wake, _)| Arc::clone(wake));
+        self.with_port(&self.connection.source, |port| {
+            if let PortEnd::DataOutput(output) = port {
+                output.connections.push((sender, wake));
+            }
+        });
+        self.with_port(target, |port| {
+            if let PortEnd::DataInput(input, _) = port {
+                *input = Some(receiver);
+            }
+        });
+    }
+
+    fn event(&self) {
+        let (sender, messages) = mailbox(EVENT_QUEUE, self.size(&self.connection.source));
+        let Some((wake, _)) = self.wake.clone() else {
+            return;
+        };
+        self.with_port(&self.connection.source, |port| {
+            if let PortEnd::EventOutput(output) = port {
+                output.connections.push((sender, wake));
+            }
+        });
+        self.add_inbox(None, messages);
+    }
+
+    fn service(&self) {
+        let (source, target) = (&self.connection.source, &self.connection.target);
+        let (Some(required), Some(provided)) = (
+            port_of(self.libraries, source),
+            port_of(self.libraries, target),
+        ) else {
+            return;
+        };
+        let Some((wake, _)) = self.wake.clone() else {
+            return;
+        };
+        let mut methods = Vec::new();
+        for method in &required.methods {
+            let Some((index, _)) = provided_method(provided, method) else {
+                return;
+            };
+            let index = u32::try_from(index).unwrap_or(u32::MAX);
+            let size = |data_type: &Option<DataType>| data_type.as_ref().map_or(0, |it| it.size);
+            let queue = (!method.blocking).then(|| {
+                let (sender, messages) = mailbox(CALL_QUEUE, size(&method.request));
+                self.add_inbox(Some(index), messages);
+                sender
+            });
+            methods.push(BoundMethod {
+                index,
+                request: vec![0; size(&method.request)].into_boxed_slice(),
+                reply: vec![0; size(&method.reply)].into_boxed_slice(),
+                queue,
+            });
+        }
+        let provider = &self.components[target.component];
+        provider.share();
+        self.components[source.component].share();
+        let port = self.port_index(target);
+        self.with_port(source, |end| {
+            if let PortEnd::Required(calls) = end {
+                calls.methods = methods;
+                calls.provider = Some(Provider {
+                    component: Arc::clone(provider),
+                    port,
+                    wake,
+                });
+            }
+        });
+    }
+
+    fn add_inbox(&self, method: Option<u32>, messages: crate::port::MailReceiver) {
+        let target = &self.connection.target;
+        let port = self.port_index(target);
+        if let Some(mut component) =
+            self.components[target.component].enter(SETUP_TOKEN, std::time::Duration::ZERO)
+        {
+            component.services_mut().add_inbox(Inbox {
+                port,
+                method,
+                messages,
+            });
+        }
+    }
+
+    fn size(&self, end: &PortReference) -> usize {
+        port_of(self.libraries, end)
+            .and_then(|port| port.data_type.as_ref())
+            .map_or(0, |data_type| data_type.size)
+    }
+
+    fn port_index(&self, end: &PortReference) -> u32 {
+        self.libraries[end.component]
+            .description
+            .ports
+            .iter()
+            .position(|port| port.name == end.port)
+            .and_then(|index| u32::try_from(index).ok())
+            .unwrap_or(u32::MAX)
+    }
+
+    fn with_port(&self, end: &PortReference, change: impl FnOnce(&mut PortEnd)) {
+        let index = self.port_index(end);
+        if let Some(mut component) =
+            self.components[end.component].enter(SETUP_TOKEN, std::time::Duration::ZERO)
+            && let Some(port) = component.services_mut().port_mut(index as usize)
+        {
+            change(port);
+        }
+    }
+}

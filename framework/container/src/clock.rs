@@ -1,0 +1,50 @@
+//! Two clocks behind one face: the machine's, and one that the simulated schedule sets.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+/// Time since the application started.
+#[derive(Debug)]
+pub enum Clock {
+    /// The machine's monotonic clock.
+    Real(Instant),
+    /// Set by the schedule, in nanoseconds.
+    Simulated(AtomicU64),
+}
+
+impl Clock {
+    /// A real clock that starts now.
+    pub fn real() -> Self {
+        Self::Real(Instant::now())
+    }
+
+    /// A simulated clock at zero.
+    pub fn simulated() -> Self {
+        Self::Simulated(AtomicU64::new(0))
+    }
+
+    /// Whether time is simulated.
+    pub fn is_simulated(&self) -> bool {
+        matches!(self, Self::Simulated(_))
+    }
+
+    /// Nanoseconds since the application started.
+    pub fn now_ns(&self) -> u64 {
+        match self {
+            Self::Real(start) => u64::try_from(start.elapsed().as_nanos()).unwrap_or(u64::MAX),
+            Self::Simulated(now) => now.load(Ordering::Relaxed),
+        }
+    }
+
+    /// Time since the application started.
+    pub fn now(&self) -> Duration {
+        Duration::from_nanos(self.now_ns())
+    }
+
+    /// Sets simulated time; does nothing to a real clock. Time never goes back.
+    pub fn advance_to(&self, now_ns: u64) {
+        if let Self::Simulated(now) = self {
+            now.fetch_max(now_ns, Ordering::Relaxed);
+        }
+    }
+}

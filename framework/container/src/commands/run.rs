@@ -1,0 +1,1 @@
+//! `steadfast run`: brings an application up, watches it, stops it in order.

@@ -1,0 +1,136 @@
+//! Who may enter a component: one thread at a time. Only components whose services are called from
+//! other threads pay for the question.
+#![allow(unsafe_code)] // exclusive access by a flag that the compiler cannot see
+
+use std::cell::UnsafeCell;
+use std::ops::{Deref, DerefMut};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::time::{Duration, Instant};
+
+use rustix::thread::futex;
+
+use super::Component;
+
+/// A component that several threads may want to enter.
+pub struct ComponentCell {
+    /// 0: free; else the token of the thread inside, with [`WAITING`] if another one waits.
+    entered: AtomicU32,
+    /// Whether threads other than that of its executor may want to enter.
+    shared: AtomicBool,
+    component: UnsafeCell<Component>,
+}
+
+/// Somebody waits for the component to be free.
+const WAITING: u32 = 1 << 31;
+
+// SAFETY: the component is reached only through `Entered`, of which there is one at a time: by the
+// flag if it is shared; else only the lane that runs it enters, and the lane that starts and stops
+// the application does so while no other runs. `seize` has a contract of its own.
+unsafe impl Sync for ComponentCell {}
+
+/// Being inside a component; leaves it when dropped.
+pub struct Entered<'cell> {
+    cell: &'cell ComponentCell,
+}
+
+impl ComponentCell {
+    /// A component that nobody is inside of.
+    pub fn new(component: Component) -> Self {
+        Self {
+            entered: AtomicU32::new(0),
+            shared: AtomicBool::new(false),
+            component: UnsafeCell::new(component),
+        }
+    }
+
+    /// From now on other threads may want to enter: its services are called. To be said before
+    /// anything runs.
+    pub fn share(&self) {
+        self.shared.store(true, Ordering::Release);
+    }
+
+    /// Enters the component on behalf of the thread with this token (not 0), waiting at most
+    /// `limit`. `None` if it does not become free, or if this very thread is inside already.
+    #[inline]
+    pub fn enter(&self, token: u32, limit: Duration) -> Option<Entered<'_>> {
+        if !self.shared.load(Ordering::Relaxed) {
+            return Some(Entered { cell: self });
+        }
+        self.entered
+            .compare_exchange(0, token, Ordering::Acquire, Ordering::Relaxed)
+            .is_ok()
+            .then_some(Entered { cell: self })
+            .or_else(|| self.enter_slowly(token, limit))
+    }
+
+    #[cold]
+    fn enter_slowly(&self, token: u32, limit: Duration) -> Option<Entered<'_>> {
+        let start = Instant::now();
+        loop {
+            let inside = self.entered.load(Ordering::Relaxed);
+            if inside == 0 {
+                let free =
+                    self.entered
+                        .compare_exchange(0, token, Ordering::Acquire, Ordering::Relaxed);
+                if free.is_ok() {
+                    return Some(Entered { cell: self });
+                }
+                continue;
+            }
+            let left = limit.checked_sub(start.elapsed())?;
+            if inside & !WAITING == token {
+                return None;
+            }
+            let marked = inside | WAITING;
+            let waits = inside == marked
+                || self
+                    .entered
+                    .compare_exchange(inside, marked, Ordering::Relaxed, Ordering::Relaxed)
+                    .is_ok();
+            if waits {
+                let left = futex::Timespec {
+                    tv_sec: i64::try_from(left.as_secs()).unwrap_or(i64::MAX),
+                    tv_nsec: i64::from(left.subsec_nanos()),
+                };
+                // Woken, interrupted or too late: the loop looks again.
+                let _look_again =
+                    futex::wait(&self.entered, futex::Flags::PRIVATE, marked, Some(&left));
+            }
+        }
+    }
+
+    /// The component, although a thread is inside: that thread was lost and never runs again.
+    ///
+    /// # Safety
+    /// The thread inside must have been lost (its lane's `Loss` says so), and only the thread that
+    /// takes over its lane may call this.
+    pub unsafe fn seize(&self) -> Entered<'_> {
+        Entered { cell: self }
+    }
+}
+
+impl Deref for Entered<'_> {
+    type Target = Component;
+    fn deref(&self) -> &Component {
+        // SAFETY: being inside is exclusive.
+        unsafe { &*self.cell.component.get() }
+    }
+}
+
+impl DerefMut for Entered<'_> {
+    fn deref_mut(&mut self) -> &mut Component {
+        // SAFETY: being inside is exclusive.
+        unsafe { &mut *self.cell.component.get() }
+    }
+}
+
+impl Drop for Entered<'_> {
+    #[inline]
+    fn drop(&mut self) {
+        if self.cell.shared.load(Ordering::Relaxed)
+            && self.cell.entered.swap(0, Ordering::Release) & WAITING != 0
+        {
+            let _woken = futex::wake(&self.cell.entered, futex::Flags::PRIVATE, u32::MAX);
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! The event log: everything that happened, one JSON object a line, written by a thread of its own.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use crossbeam::channel::{Receiver, RecvTimeoutError, Sender, TrySendError, bounded};
+use serde::Serialize;
+use system_model::fault::Fault;
+
+/// Events that may wait for the writer: more than a robot of a hundred components makes in a
+/// second when all of them fail.
+const QUEUE: usize = 8192;
+
+/// Written lines reach the file at least this often, so that a person can watch it grow.
+const FLUSH_PERIOD: Duration = Duration::from_millis(200);
+
+/// Something that happened.
+#[derive(Debug, Clone, Serialize)]
+#[serde(tag = "event", rename_all = "snake_case")]
+pub enum Event {
+    /// The application is assembled and about to run.
+    RunStarted {
+        /// Its name.
+        application: String,
+        /// `real` or `simulated`.
+        clock: &'static str,
+        /// Seed of the simulated world.
+        seed: u64,
+        /// Number of component instances.
+        components: usize,
+    },
+    /// A component went from one life-cycle state to another.
+    State {
+        /// Instance name.
+        component: String,
+        /// Old state.
+        from: &'static str,
+        /// New state.
+        to: &'static str,
+        /// Incarnation.
+        incarnation: u32,
+    },
+    /// A component failed.
+    Fault {
+        /// Instance name.
+        component: String,
+        /// Incarnation.
+        incarnation: u32,
+        /// Kind of fault.
+        kind: &'static str,
+        /// Callback that failed, as OPRoS names it.
+        callback: &'static str,
+        /// What was seen.
+        message: String,
+        /// `file:line:column` in the component's source, where it is known.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        place: Option<String>,
+        /// Whether its thread was lost with it.
+        thread_lost: bool,
+    },
+    /// An executor did not finish its cycle within its period.
+    Overrun {
+        /// Executor name.
+        executor: String,
+        /// Cycle number.
+        cycle: u64,
+        /// How much too late, in nanoseconds.
+        late_ns: u64,
+    },
+    /// A component logged something.
+    Log {
+        /// Instance name.
+        component: String,
+        /// `error`, `warning`, `information` or `debug`.
+        level: &'static str,
+        /// What it said.
+        message: String,
+    },
+    /// The container has something to say that is no fault of a component.
+    Notice {
+        /// What it is.
+        message: String,
+    },
+    /// The robot has reached its target.
+    TargetReached {
+        /// Robot time in seconds.
+        time_s: f64,
+    },
+    /// The application has stopped.
+    RunStopped {
+        /// Why.
+        reason: &'static str,
+        /// Events that were lost because the writer did not keep up.
+        events_lost: u64,
+    },
+}
+
+impl Event {
+    /// The event for a fault.
+    pub fn fault(component: &str, incarnation: u32, fault: &Fault) -> Self {
+        Self::Fault {
+            component: component.to_owned(),
+            incarnation,
+            kind: fault.kind.name(),
+            callback: fault.callback,
+            message: fault.message.clone(),
+            place: fault
+                .place
+                .as_ref()
+                .map(|(file, line, column)| format!("{file}:{line}:{column}")),
+            thread_lost: fault.thread_lost,
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct Line {
+    t_ns: u64,
+    #[serde(flatten)]
+    event: Event,
+}
+
+/// Where events go. Cheap to call from any thread; never waits unless time is simulated.
+#[derive(Debug)]
+pub struct EventLog {
+    sender: Sender<Option<Line>>,
+    waits: bool,
+    lost: AtomicU64,
+    echo: Option<Sender<(u64, Event)>>,
+}
+
+/// The thread that writes; to be closed when all has been said.
+#[derive(Debug)]
+pub struct EventWriter {
+    thread: JoinHandle<io::Result<()>>,
+}
+
+impl EventLog {
+    /// Opens the log; without a file events are only counted and echoed. `waits`: whether a full
+    /// queue makes the caller wait (simulated time, where nothing may be lost and nothing is late).
+    ///
+    /// # Errors
+    /// If the file cannot be created.
+    pub fn open(
+        path: Option<&Path>,
+        waits: bool,
+        echo: Option<Sender<(u64, Event)>>,
+    ) -> io::Result<(Self, EventWriter)> {
+        let file = path.map(File::create).transpose()?;
+        let (sender, receiver) = bounded(QUEUE);
+        let thread = std::thread::Builder::new()
+            .name("event-log".to_owned())
+            .spawn(move || write_all(&receiver, file))?;
+        let log = Self {
+            sender,
+            waits,
+            lost: AtomicU64::new(0),
+            echo,
+        };
+        Ok((log, EventWriter { thread }))
+    }
+
+    /// Records an event at a time of the application's clock.
+    pub fn record(&self, t_ns: u64, event: Event) {
+        if let Some(echo) = &self.echo {
+            // The person's view may lag; the file is the record.
+            let _lagging = echo.try_send((t_ns, event.clone()));
+        }
+        let line = Some(Line { t_ns, event });
+        if self.waits {
+            // Fails only when the writer has ended, after which nobody reads.
+            let _ended = self.sender.send(line);
+        } else if let Err(TrySendError::Full(_)) = self.sender.try_send(line) {
+            self.lost.fetch_add(1, Ordering::Relaxed);
+        }
+    }
+
+    /// Says that nothing more will come: the writer ends. Abandoned threads may hold the log for
+    /// ever, so its end cannot be that everyone has let go of it.
+    pub fn finish(&self) {
+        // Fails only when the writer has ended already.
+        let _ended = self.sender.send(None);
+    }
+
+    /// Events lost so far.
+    pub fn lost(&self) -> u64 {
+        self.lost.load(Ordering::Relaxed)
+    }
+}
+
+impl EventWriter {
+    /// Waits until everything is written, after [`EventLog::finish`].
+    ///
+    /// # Errors
+    /// If the file could not be written.
+    pub fn close(self) -> io::Result<()> {
+        self.thread
+            .join()
+            .unwrap_or_else(|_panic| Err(io::Error::other("the event writer panicked")))
+    }
+}
+
+fn write_all(receiver: &Receiver<Option<Line>>, file: Option<File>) -> io::Result<()> {
+    let mut output = file.map(BufWriter::new);
+    loop {
+        match receiver.recv_timeout(FLUSH_PERIOD) {
+            Ok(Some(line)) => {
+                if let Some(output) = &mut output {
+                    serde_json::to_writer(&mut *output, &line)?;
+                    output.write_all(b"\n")?;
+                }
+            }
+            Err(RecvTimeoutError::Timeout) => {
+                if let Some(output) = &mut output {
+                    output.flush()?;
+                }
+            }
+            Ok(None) | Err(RecvTimeoutError::Disconnected) => {
+                return output.map_or(Ok(()), |mut output| output.flush());
+            }
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! Executors: which components run together, in what order, and when.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use system_model::specification::{ExecutionKind, SchedulingPolicy};
+
+use crate::component::ComponentCell;
+use crate::guard::loss::LostThread;
+use crate::lane::Lane;
+use crate::wake::Wake;
+
+/// How long an executor waits for a component that another thread is inside of (a service call):
+/// then it leaves it out of this cycle. Longer than a short service, shorter than usual periods.
+const ENTER_LIMIT: Duration = Duration::from_millis(5);
+
+/// A component in an executor, with its coordination.
+pub struct Member {
+    /// The component.
+    pub component: Arc<ComponentCell>,
+    /// Its number in the application, as the guard reports it.
+    pub number: u32,
+    /// Set by components that must run before it; all must be set, then all are cleared.
+    pub triggers: Vec<Arc<AtomicBool>>,
+    /// Set when it has run.
+    pub followers: Vec<Arc<AtomicBool>>,
+}
+
+/// A group of components that one thread runs.
+pub struct Executor {
+    /// Name for people: that of its first component.
+    pub name: String,
+    /// Kind.
+    pub kind: ExecutionKind,
+    /// Period; zero if it has none.
+    pub period: Duration,
+    /// Priority, 0 (lowest) to 99.
+    pub priority: u8,
+    /// Scheduling policy.
+    pub policy: SchedulingPolicy,
+    /// What wakes it.
+    pub wake: Arc<Wake>,
+    /// Its components, in document order.
+    pub members: Vec<Member>,
+    /// Completed cycles.
+    pub cycles: u64,
+    /// Steps of the current cycle that have begun: first every member executes, then every member
+    /// is updated. A cycle that was cut off by a lost thread goes on behind the step it was in.
+    step: usize,
+}
+
+impl Executor {
+    /// An executor that has not begun.
+    pub fn new(
+        name: String,
+        kind: ExecutionKind,
+        period: Duration,
+        priority: u8,
+        policy: SchedulingPolicy,
+        wake: Arc<Wake>,
+    ) -> Self {
+        Self {
+            name,
+            kind,
+            period,
+            priority,
+            policy,
+            wake,
+            members: Vec::new(),
+            cycles: 0,
+            step: 0,
+        }
+    }
+
+    /// Whether a cycle was cut off.
+    pub fn is_in_cycle(&self) -> bool {
+        self.step > 0
+    }
+
+    /// One cycle (or the rest of one), at `now_ns` of the container's clock.
+    pub fn cycle(&mut self, now_ns: u64, lane: &Lane) {
+        let count = self.members.len();
+        while self.step < 2 * count {
+            let step = self.step;
+            self.step += 1;
+            if step < count {
+                self.execute(step, now_ns, lane);
+            } else if self.kind != ExecutionKind::Passive {
+                self.update(step - count, lane);
+            }
+        }
+        self.step = 0;
+        self.cycles += 1;
+    }
+
+    /// Counts an overrun with every component that runs.
+    pub fn overran(&self, lane: &Lane) {
+        for member in &self.members {
+            if let Some(component) = member.component.enter(lane.token(), Duration::ZERO)
+                && component.is_active()
+            {
+                component.overran();
+            }
+        }
+    }
+
+    #[inline]
+    fn execute(&mut self, index: usize, now_ns: u64, lane: &Lane) {
+        let member = &self.members[index];
+        let Some(mut component) = member.component.enter(lane.token(), ENTER_LIMIT) else {
+            return;
+        };
+        component.deliver(now_ns, lane.loss());
+        if self.kind == ExecutionKind::Passive || !component.is_active() {
+            return;
+        }
+        let triggered = member
+            .triggers
+            .iter()
+            .all(|trigger| trigger.load(Ordering::Acquire));
+        if !triggered {
+            return;
+        }
+        component.execute(now_ns, lane.loss());
+        drop(component);
+        for trigger in &member.triggers {
+            trigger.store(false, Ordering::Release);
+        }
+        for follower in &member.followers {
+            follower.store(true, Ordering::Release);
+        }
+    }
+
+    #[inline]
+    fn update(&mut self, index: usize, lane: &Lane) {
+        let member = &self.members[index];
+        if let Some(mut component) = member.component.enter(lane.token(), ENTER_LIMIT)
+            && component.is_active()
+        {
+            component.updated(lane.loss());
+        }
+    }
+}
+
+/// Puts the components that a lost thread is inside of for ever into ERROR: those of its executor
+/// and those whose services they had called. `components` are all of the application.
+#[allow(unsafe_code)] // the hand-over after a loss
+pub fn mark_lost(components: &[Arc<ComponentCell>], lost: &LostThread) {
+    for number in &lost.components[..lost.depth] {
+        if let Some(component) = components.get(*number as usize) {
+            // SAFETY: the record of the lane's loss names this component, and the caller is the
+            // thread that took the lane over.
+            let mut component = unsafe { component.seize() };
+            component.lost(lost);
+        }
+    }
+}

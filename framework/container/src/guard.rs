@@ -1,0 +1,348 @@
+//! The guard: every component instance runs on a stack of its own, as a coroutine.
+//!
+//! The container resumes it with a call; a host service that the component asks for suspends back,
+//! so container code always runs on the container's stack. A trap with the stack pointer inside a
+//! component's stack is that component's fault: the handler makes the coroutine return a record of
+//! it, and no frame of ours is skipped. The stack is then quarantined: never reused, never freed,
+//! like a coroutine that is never resumed.
+//!
+//! Survives: traps, aborts, `exit`, stack overflow into the guard area, panics. Does not survive:
+//! memory that the component corrupted before it trapped; a lock of the C library that it held.
+#![allow(unsafe_code)] // the whole point: foreign code, stacks, signals
+
+mod copy;
+mod host;
+mod interpose;
+pub mod loss;
+mod registers;
+mod stack;
+mod trap;
+
+use std::hint::black_box;
+use std::io;
+use std::mem;
+use std::ptr;
+
+use component_abi::{Callbacks, Instance, Status};
+use corosensei::{Coroutine, CoroutineResult, Yielder};
+
+pub use host::{ForeignBytes, ForeignBytesMut, ForeignText, HostServices, Request};
+pub use interpose::Exit;
+pub use trap::{CodeRange, Trap};
+
+use host::HostSide;
+use loss::Loss;
+use stack::ComponentStack;
+use trap::{Ended, Frame};
+
+/// Room at the base of every component stack for the trap function, which starts there: it must
+/// not overwrite the component's frames, because threads of the component may still use them.
+const TRAP_ROOM_BYTES: usize = 4096;
+
+/// A callback with its arguments.
+#[derive(Debug, Clone, Copy)]
+pub enum Callback {
+    /// Makes the instance.
+    Create,
+    /// `onInitialize`.
+    Initialize,
+    /// `onStart`.
+    Start,
+    /// `onStop`.
+    Stop,
+    /// `onReset`.
+    Reset,
+    /// `onError`.
+    Error,
+    /// `onRecover`.
+    Recover,
+    /// `onDestroy`.
+    Destroy,
+    /// `onExecute`.
+    Execute,
+    /// `onUpdated`.
+    Updated,
+    /// `onPeriodChanged`.
+    PeriodChanged(u64),
+    /// `onEvent`: port, content, size.
+    Event(u32, *const u8, usize),
+    /// A service method.
+    Call(ServiceCall),
+    /// Frees the instance.
+    DestroyInstance,
+}
+
+/// A call of a provided method; the memory must stay valid until the callback is over.
+#[derive(Debug, Clone, Copy)]
+pub struct ServiceCall {
+    /// Index of the provided port.
+    pub port: u32,
+    /// Index of the method in the provider's list.
+    pub method: u32,
+    /// Request bytes.
+    pub request: *const u8,
+    /// Their number.
+    pub request_size: usize,
+    /// Place for the reply.
+    pub reply: *mut u8,
+    /// Its size.
+    pub reply_size: usize,
+}
+
+/// How a callback ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ending {
+    /// It returned.
+    Returned(Status),
+    /// It trapped; the instance is quarantined.
+    Trapped(Trap),
+    /// It called `abort`, `exit` or the like; the instance is quarantined.
+    Left(Exit),
+    /// It cannot be called: it has ended before.
+    Gone,
+}
+
+/// What goes into the coroutine.
+enum Input {
+    Callback(Callback),
+    Reply(u64),
+    End,
+}
+
+/// What comes out of it.
+enum Yielded {
+    Returned(Status),
+    Asked(Request),
+    Left(Exit),
+}
+
+type ComponentCoroutine = Coroutine<Input, Yielded, Ended, ComponentStack>;
+
+/// One component instance behind the guard.
+pub struct Guarded {
+    /// `None` once the component has trapped or left.
+    coroutine: Option<ComponentCoroutine>,
+    /// Leaked when the instance is quarantined: threads of the component may still name it.
+    frame: Box<Frame>,
+    side: Box<HostSide>,
+}
+
+// SAFETY: between callbacks the coroutine is suspended in `serve`, whose frame holds nothing that
+// is bound to a thread; the instance itself is entered by one thread at a time (contract of
+// `Component` in the SDK and of the header).
+unsafe impl Send for Guarded {}
+
+impl Guarded {
+    /// Prepares a stack for an instance of the component with these callbacks. Nothing of it runs
+    /// yet. `component` is told when a thread is lost inside it.
+    ///
+    /// # Errors
+    /// If the stack cannot be mapped.
+    pub fn new(callbacks: Callbacks, code: CodeRange, component: u32) -> io::Result<Self> {
+        trap::install();
+        let stack = ComponentStack::new()?;
+        let side = Box::new(HostSide::new(&stack));
+        let side_pointer: *const HostSide = &raw const *side;
+        let coroutine = ComponentCoroutine::with_stack(stack, move |yielder, first| {
+            let room = [0u8; TRAP_ROOM_BYTES];
+            black_box(&room);
+            // SAFETY: the host side is boxed and outlives the coroutine, or is leaked with it.
+            let ended = serve(unsafe { &*side_pointer }, &callbacks, yielder, first);
+            black_box(&room);
+            ended
+        });
+        let frame = Box::new(Frame {
+            trap: coroutine.trap_handler(),
+            limit: side.limit(),
+            code,
+            loss: ptr::null(),
+            outer: ptr::null(),
+            component,
+            context: side_pointer,
+        });
+        Ok(Self {
+            coroutine: Some(coroutine),
+            frame,
+            side,
+        })
+    }
+
+    /// Gives the calling thread what the trap handler needs. Must be done once by every thread
+    /// that calls components.
+    ///
+    /// # Errors
+    /// If the system refuses an alternate signal stack.
+    pub fn prepare_thread() -> io::Result<()> {
+        trap::prepare_thread()
+    }
+
+    /// How many components the calling thread is inside of, one called by the other.
+    pub fn call_depth() -> usize {
+        trap::depth()
+    }
+
+    /// Whether the instance can still be called.
+    pub fn is_alive(&self) -> bool {
+        self.coroutine.is_some()
+    }
+
+    /// Runs a callback to its end; host services that it asks for are answered by `services`.
+    /// `loss` is where this thread leaves word if it is lost inside.
+    pub fn call<Services: HostServices>(
+        &mut self,
+        callback: Callback,
+        loss: &Loss,
+        services: &mut Services,
+    ) -> Ending {
+        let Some(coroutine) = &mut self.coroutine else {
+            return Ending::Gone;
+        };
+        self.frame.loss = loss;
+        self.frame.outer = trap::current();
+        trap::set_current(&raw const *self.frame);
+        let mut input = Input::Callback(callback);
+        let ending = loop {
+            match coroutine.resume(input) {
+                CoroutineResult::Yield(Yielded::Returned(status)) => {
+                    break Ending::Returned(status);
+                }
+                CoroutineResult::Yield(Yielded::Asked(request)) => {
+                    input = Input::Reply(services.answer(request));
+                }
+                CoroutineResult::Yield(Yielded::Left(exit)) => break Ending::Left(exit),
+                CoroutineResult::Return(Ended::Trapped(trap)) => break Ending::Trapped(trap),
+                CoroutineResult::Return(Ended::Asked) => break Ending::Gone,
+            }
+        };
+        trap::set_current(self.frame.outer);
+        if !matches!(ending, Ending::Returned(_)) {
+            self.quarantine();
+        }
+        ending
+    }
+
+    /// Never call this instance again; what it holds stays as it is. Also for an instance whose
+    /// thread was lost inside it.
+    pub fn quarantine(&mut self) {
+        if let Some(coroutine) = self.coroutine.take() {
+            mem::forget(coroutine);
+        }
+    }
+
+    /// Whether the component was constructed.
+    pub fn has_instance(&self) -> bool {
+        !self.side.instance().is_null()
+    }
+}
+
+impl Drop for Guarded {
+    fn drop(&mut self) {
+        match self.coroutine.take() {
+            Some(mut coroutine) if coroutine.started() => {
+                // Suspended in `serve` between two callbacks: only code of ours runs.
+                let _ended = coroutine.resume(Input::End);
+            }
+            Some(_never_started) => {}
+            None => {
+                let quarantined = Box::new(HostSide::empty());
+                mem::forget(mem::replace(&mut self.side, quarantined));
+            }
+        }
+    }
+}
+
+/// Runs on the component's stack: receives callbacks, calls them, hands the result back.
+fn serve(
+    side: &HostSide,
+    callbacks: &Callbacks,
+    yielder: &Yielder<Input, Yielded>,
+    first: Input,
+) -> Ended {
+    side.set_yielder(yielder);
+    let mut input = first;
+    loop {
+        match input {
+            Input::Callback(callback) => {
+                let status = invoke(side, callbacks, callback);
+                input = yielder.suspend(Yielded::Returned(status));
+            }
+            // A reply without a question does not happen; ending is the safe answer.
+            Input::Reply(_) | Input::End => return Ended::Asked,
+        }
+    }
+}
+
+/// Calls the component.
+fn invoke(side: &HostSide, callbacks: &Callbacks, callback: Callback) -> Status {
+    let instance = side.instance();
+    match callback {
+        Callback::Create => create(side, callbacks),
+        _ if instance.is_null() => Status::PRECONDITION_NOT_MET,
+        Callback::Execute => plain(callbacks.on_execute, instance),
+        Callback::Updated => plain(callbacks.on_updated, instance),
+        Callback::Initialize => plain(callbacks.on_initialize, instance),
+        Callback::Start => plain(callbacks.on_start, instance),
+        Callback::Stop => plain(callbacks.on_stop, instance),
+        Callback::Reset => plain(callbacks.on_reset, instance),
+        Callback::Error => plain(callbacks.on_error, instance),
+        Callback::Recover => plain(callbacks.on_recover, instance),
+        Callback::Destroy => plain(callbacks.on_destroy, instance),
+        Callback::PeriodChanged(period_ns) => match callbacks.on_period_changed {
+            // SAFETY: the instance was made by this library's `create` and is alive.
+            Some(function) => unsafe { function(instance, period_ns) },
+            None => Status::SUCCESS,
+        },
+        Callback::Event(port, data, size) => match callbacks.on_event {
+            // SAFETY: as above; the caller of `Guarded::call` keeps the content valid.
+            Some(function) => unsafe { function(instance, port, data, size) },
+            None => Status::SUCCESS,
+        },
+        Callback::Call(call) => match callbacks.on_call {
+            // SAFETY: as above; the caller keeps request and reply valid.
+            Some(function) => unsafe {
+                function(
+                    instance,
+                    call.port,
+                    call.method,
+                    call.request,
+                    call.request_size,
+                    call.reply,
+                    call.reply_size,
+                )
+            },
+            None => Status::UNSUPPORTED_METHOD,
+        },
+        Callback::DestroyInstance => destroy_instance(side, callbacks, instance),
+    }
+}
+
+fn plain(function: Option<component_abi::callback::Callback>, instance: *mut Instance) -> Status {
+    match function {
+        // SAFETY: the instance was made by this library's `create` and is alive.
+        Some(function) => unsafe { function(instance) },
+        None => Status::SUCCESS,
+    }
+}
+
+fn create(side: &HostSide, callbacks: &Callbacks) -> Status {
+    let Some(function) = callbacks.create else {
+        return Status::UNSUPPORTED_METHOD;
+    };
+    // SAFETY: the table is static; the context is this instance's host side, which outlives it.
+    let instance = unsafe { function(&raw const host::TABLE, side.context()) };
+    side.set_instance(instance);
+    if instance.is_null() {
+        Status::CALLEE_ERROR
+    } else {
+        Status::SUCCESS
+    }
+}
+
+fn destroy_instance(side: &HostSide, callbacks: &Callbacks, instance: *mut Instance) -> Status {
+    side.set_instance(ptr::null_mut());
+    if let Some(function) = callbacks.destroy_instance {
+        // SAFETY: the instance is alive and is forgotten here, so this happens once.
+        unsafe { function(instance) };
+    }
+    Status::SUCCESS
+}

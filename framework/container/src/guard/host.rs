@@ -1,0 +1,346 @@
+//! The component's way into the container: the host table. Each function suspends the coroutine
+//! with a request; the executor's side answers it on its own stack.
+
+use std::cell::Cell;
+use std::ptr;
+
+use component_abi::{Header, HostContext, HostTable, Instance, Status, Text};
+use corosensei::Yielder;
+use corosensei::stack::Stack as _;
+
+use super::copy::guarded_copy;
+use super::stack::ComponentStack;
+use super::{Exit, Input, Yielded};
+
+/// What a component asks. Pointers are as the component gave them: anything.
+#[derive(Debug, Clone, Copy)]
+pub enum Request {
+    /// Next datum of an input.
+    Read(u32, ForeignBytesMut),
+    /// A datum for an output.
+    Write(u32, ForeignBytes),
+    /// An event for an output.
+    Raise(u32, ForeignBytes),
+    /// Port, method, request, reply, deadline in nanoseconds.
+    Call(u32, u32, ForeignBytes, ForeignBytesMut, u64),
+    /// Name, value, place for its length.
+    Property(ForeignText, ForeignBytesMut, ForeignBytesMut),
+    /// The clock.
+    Now,
+    /// Level and message.
+    Log(u32, ForeignText),
+    /// Registers memory.
+    Critical(*mut u8, usize),
+    /// A fault that the component found itself.
+    ReportFault(Status, ForeignText),
+    /// Why the callback is about to fail: message, file, line, column.
+    Failed(ForeignText, ForeignText, u32, u32),
+    /// Name, place for the descriptor.
+    OpenDevice(ForeignText, ForeignBytesMut),
+}
+
+/// Answers what components ask; the answer is a status code, or the time for [`Request::Now`].
+pub trait HostServices {
+    /// Answers one request. Runs on the container's stack.
+    fn answer(&mut self, request: Request) -> u64;
+}
+
+/// Bytes that a component names for reading; perhaps not readable at all.
+#[derive(Debug, Clone, Copy)]
+pub struct ForeignBytes {
+    data: *const u8,
+    size: usize,
+}
+
+/// Bytes that a component names for writing.
+#[derive(Debug, Clone, Copy)]
+pub struct ForeignBytesMut {
+    data: *mut u8,
+    size: usize,
+}
+
+/// Text that a component names.
+#[derive(Debug, Clone, Copy)]
+pub struct ForeignText {
+    bytes: ForeignBytes,
+}
+
+/// Longest text that is taken from a component, in bytes; the rest is cut off.
+const LONGEST_TEXT: usize = 4096;
+
+impl ForeignBytes {
+    /// How many bytes the component says there are.
+    pub fn size(self) -> usize {
+        self.size
+    }
+
+    /// Copies them to `to`, which must be as long; false if they are not readable.
+    #[must_use]
+    pub fn copy_to(self, to: &mut [u8]) -> bool {
+        // SAFETY: `to` is ours, writable for its length, and checked to be as long.
+        to.len() == self.size && unsafe { guarded_copy(to.as_mut_ptr(), self.data, self.size) }
+    }
+}
+
+impl ForeignBytesMut {
+    /// How many bytes the component says there are.
+    pub fn size(self) -> usize {
+        self.size
+    }
+
+    /// Fills the first of them from `from`; false if `from` is longer or they are not writable.
+    #[must_use]
+    pub fn copy_from(self, from: &[u8]) -> bool {
+        // SAFETY: `from` is ours and readable for its length; the other side is the component's
+        // own, as far as it says the truth, and it may write anywhere itself.
+        from.len() <= self.size && unsafe { guarded_copy(self.data, from.as_ptr(), from.len()) }
+    }
+}
+
+impl ForeignText {
+    fn new(text: Text) -> Self {
+        Self {
+            bytes: ForeignBytes {
+                data: text.data,
+                size: text.length,
+            },
+        }
+    }
+
+    /// The text, cut to a bound; invalid UTF-8 is replaced. `None` if it is not readable.
+    pub fn read(self) -> Option<String> {
+        let size = self.bytes.size.min(LONGEST_TEXT);
+        let mut buffer = vec![0u8; size];
+        let bytes = ForeignBytes { size, ..self.bytes };
+        bytes
+            .copy_to(&mut buffer)
+            .then(|| String::from_utf8_lossy(&buffer).into_owned())
+    }
+}
+
+/// What an instance's host context points to.
+pub(super) struct HostSide {
+    yielder: Cell<*const Yielder<Input, Yielded>>,
+    instance: Cell<*mut Instance>,
+    base: usize,
+    limit: usize,
+}
+
+impl HostSide {
+    pub(super) fn new(stack: &ComponentStack) -> Self {
+        Self {
+            yielder: Cell::new(ptr::null()),
+            instance: Cell::new(ptr::null_mut()),
+            base: stack.base().get(),
+            limit: stack.limit().get(),
+        }
+    }
+
+    /// Stands in for a host side that was leaked.
+    pub(super) fn empty() -> Self {
+        Self {
+            yielder: Cell::new(ptr::null()),
+            instance: Cell::new(ptr::null_mut()),
+            base: 0,
+            limit: 0,
+        }
+    }
+
+    pub(super) fn limit(&self) -> usize {
+        self.limit
+    }
+
+    pub(super) fn context(&self) -> *mut HostContext {
+        ptr::from_ref(self).cast_mut().cast()
+    }
+
+    pub(super) fn set_yielder(&self, yielder: &Yielder<Input, Yielded>) {
+        self.yielder.set(yielder);
+    }
+
+    pub(super) fn instance(&self) -> *mut Instance {
+        self.instance.get()
+    }
+
+    pub(super) fn set_instance(&self, instance: *mut Instance) {
+        self.instance.set(instance);
+    }
+
+    /// Whether the caller runs on this component's own stack: threads of the component's own may
+    /// hold the context, but may not suspend a coroutine that they are not inside of.
+    fn called_on_own_stack(&self) -> bool {
+        let here = 0u8;
+        let address = (&raw const here).addr();
+        (self.limit..self.base).contains(&address)
+    }
+
+    fn ask(&self, request: Request) -> u64 {
+        if !self.called_on_own_stack() {
+            return u64::from(Status::UNAUTHORIZED.0);
+        }
+        // SAFETY: set at the start of the coroutine, lives at the base of the stack we are on.
+        let yielder = unsafe { &*self.yielder.get() };
+        match yielder.suspend(Yielded::Asked(request)) {
+            Input::Reply(reply) => reply,
+            Input::Callback(_) | Input::End => u64::from(Status::UNAUTHORIZED.0),
+        }
+    }
+
+    /// Leaves the component for good, if called on its stack: it is never resumed.
+    pub(super) fn leave(&self, exit: Exit) {
+        if self.called_on_own_stack() {
+            // SAFETY: as in `ask`.
+            let yielder = unsafe { &*self.yielder.get() };
+            loop {
+                let _never = yielder.suspend(Yielded::Left(exit));
+            }
+        }
+    }
+}
+
+/// The table that every component gets.
+pub(super) static TABLE: HostTable = HostTable {
+    header: Header::new(size_of::<HostTable>()),
+    read,
+    write,
+    raise,
+    call,
+    property,
+    now_ns,
+    log,
+    critical,
+    report_fault,
+    failed,
+    open_device,
+};
+
+fn ask(context: *mut HostContext, request: Request) -> Status {
+    let answer = ask_number(context, request);
+    u32::try_from(answer).map_or(Status::INTERNAL_FAULT, Status)
+}
+
+fn ask_number(context: *mut HostContext, request: Request) -> u64 {
+    // SAFETY: null, or the host side that this instance was created with; it is leaked, not freed,
+    // when the instance is quarantined. A made-up pointer faults here, on the component's stack.
+    match unsafe { context.cast::<HostSide>().as_ref() } {
+        Some(side) => side.ask(request),
+        None => u64::from(Status::INPUT_NULL.0),
+    }
+}
+
+fn bytes(data: *const u8, size: usize) -> ForeignBytes {
+    ForeignBytes { data, size }
+}
+
+fn bytes_mut(data: *mut u8, size: usize) -> ForeignBytesMut {
+    ForeignBytesMut { data, size }
+}
+
+unsafe extern "C" fn read(
+    context: *mut HostContext,
+    port: u32,
+    data: *mut u8,
+    size: usize,
+) -> Status {
+    ask(context, Request::Read(port, bytes_mut(data, size)))
+}
+
+unsafe extern "C" fn write(
+    context: *mut HostContext,
+    port: u32,
+    data: *const u8,
+    size: usize,
+) -> Status {
+    ask(context, Request::Write(port, bytes(data, size)))
+}
+
+unsafe extern "C" fn raise(
+    context: *mut HostContext,
+    port: u32,
+    data: *const u8,
+    size: usize,
+) -> Status {
+    ask(context, Request::Raise(port, bytes(data, size)))
+}
+
+unsafe extern "C" fn call(
+    context: *mut HostContext,
+    port: u32,
+    method: u32,
+    request: *const u8,
+    request_size: usize,
+    reply: *mut u8,
+    reply_size: usize,
+    deadline_ns: u64,
+) -> Status {
+    let request = bytes(request, request_size);
+    let reply = bytes_mut(reply, reply_size);
+    ask(
+        context,
+        Request::Call(port, method, request, reply, deadline_ns),
+    )
+}
+
+unsafe extern "C" fn property(
+    context: *mut HostContext,
+    name: Text,
+    value: *mut u8,
+    capacity: usize,
+    length: *mut usize,
+) -> Status {
+    let length = bytes_mut(length.cast(), size_of::<usize>());
+    ask(
+        context,
+        Request::Property(ForeignText::new(name), bytes_mut(value, capacity), length),
+    )
+}
+
+unsafe extern "C" fn now_ns(context: *mut HostContext) -> u64 {
+    ask_number(context, Request::Now)
+}
+
+unsafe extern "C" fn log(context: *mut HostContext, level: u32, message: Text) -> Status {
+    ask(context, Request::Log(level, ForeignText::new(message)))
+}
+
+unsafe extern "C" fn critical(
+    context: *mut HostContext,
+    address: *mut u8,
+    length: usize,
+) -> Status {
+    ask(context, Request::Critical(address, length))
+}
+
+unsafe extern "C" fn report_fault(
+    context: *mut HostContext,
+    code: Status,
+    message: Text,
+) -> Status {
+    ask(
+        context,
+        Request::ReportFault(code, ForeignText::new(message)),
+    )
+}
+
+unsafe extern "C" fn failed(
+    context: *mut HostContext,
+    message: Text,
+    file: Text,
+    line: u32,
+    column: u32,
+) -> Status {
+    let (message, file) = (ForeignText::new(message), ForeignText::new(file));
+    ask(context, Request::Failed(message, file, line, column))
+}
+
+unsafe extern "C" fn open_device(
+    context: *mut HostContext,
+    name: Text,
+    descriptor: *mut i32,
+) -> Status {
+    let descriptor = bytes_mut(descriptor.cast(), size_of::<i32>());
+    ask(
+        context,
+        Request::OpenDevice(ForeignText::new(name), descriptor),
+    )
+}

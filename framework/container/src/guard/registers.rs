@@ -1,0 +1,71 @@
+//! The interrupted registers of a signal context, by architecture.
+
+use corosensei::trap::TrapHandlerRegs;
+
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+compile_error!("the guard knows the signal contexts of x86-64 and ARM64 only");
+
+/// Instruction pointer and stack pointer at the interruption.
+#[cfg(target_arch = "x86_64")]
+pub(super) fn position(context: &libc::ucontext_t) -> (usize, usize) {
+    let registers = &context.uc_mcontext.gregs;
+    (
+        registers[libc::REG_RIP as usize] as usize,
+        registers[libc::REG_RSP as usize] as usize,
+    )
+}
+
+/// Continues at `instruction_pointer` with all else unchanged.
+#[cfg(target_arch = "x86_64")]
+pub(super) fn jump(context: &mut libc::ucontext_t, instruction_pointer: usize) {
+    context.uc_mcontext.gregs[libc::REG_RIP as usize] = instruction_pointer as i64;
+}
+
+/// Continues in the trap function that `registers` names, with flags and floating-point control
+/// as the ABI promises them: the component may have left them in any state.
+#[cfg(target_arch = "x86_64")]
+pub(super) fn redirect(context: &mut libc::ucontext_t, registers: &TrapHandlerRegs) {
+    /// Direction, trap and alignment-check flags must be clear at a function's start.
+    const CLEARED_FLAGS: i64 = 0x400 | 0x100 | 0x4_0000;
+    /// All exceptions masked, round to nearest: the initial values of the ABI.
+    const CONTROL_SSE: u32 = 0x1f80;
+    const CONTROL_X87: u16 = 0x037f;
+    let general = &mut context.uc_mcontext.gregs;
+    general[libc::REG_RIP as usize] = registers.rip as i64;
+    general[libc::REG_RSP as usize] = registers.rsp as i64;
+    general[libc::REG_RBP as usize] = registers.rbp as i64;
+    general[libc::REG_RDI as usize] = registers.rdi as i64;
+    general[libc::REG_RSI as usize] = registers.rsi as i64;
+    general[libc::REG_EFL as usize] &= !CLEARED_FLAGS;
+    // SAFETY: the kernel points it into the signal frame, or leaves it null.
+    if let Some(floating_point) = unsafe { context.uc_mcontext.fpregs.as_mut() } {
+        floating_point.mxcsr = CONTROL_SSE;
+        floating_point.cwd = CONTROL_X87;
+    }
+}
+
+/// Instruction pointer and stack pointer at the interruption.
+#[cfg(target_arch = "aarch64")]
+pub(super) fn position(context: &libc::ucontext_t) -> (usize, usize) {
+    (
+        context.uc_mcontext.pc as usize,
+        context.uc_mcontext.sp as usize,
+    )
+}
+
+/// Continues at `instruction_pointer` with all else unchanged.
+#[cfg(target_arch = "aarch64")]
+pub(super) fn jump(context: &mut libc::ucontext_t, instruction_pointer: usize) {
+    context.uc_mcontext.pc = instruction_pointer as u64;
+}
+
+/// Continues in the trap function that `registers` names.
+#[cfg(target_arch = "aarch64")]
+pub(super) fn redirect(context: &mut libc::ucontext_t, registers: &TrapHandlerRegs) {
+    context.uc_mcontext.pc = registers.pc;
+    context.uc_mcontext.sp = registers.sp;
+    context.uc_mcontext.regs[0] = registers.x0;
+    context.uc_mcontext.regs[1] = registers.x1;
+    context.uc_mcontext.regs[29] = registers.x29;
+    context.uc_mcontext.regs[30] = registers.lr;
+}

@@ -1,0 +1,71 @@
+//! The stack that a component runs on: its own mapping with a wide guard area below.
+
+use std::io;
+use std::num::NonZeroUsize;
+use std::ptr;
+
+use corosensei::stack::{Stack, StackPointer};
+
+/// Usable stack. Address space only: pages become memory when they are touched. As much as a main
+/// thread's first megabyte, so that code with large frames works without being told.
+const STACK_BYTES: usize = 1 << 20;
+
+/// Guard area below it. One page would do for Rust, which probes every page; C frames are not
+/// probed, so the guard must be wider than any sane frame.
+const GUARD_BYTES: usize = 1 << 18;
+
+/// A mapped stack.
+pub(super) struct ComponentStack {
+    base: StackPointer,
+    limit: StackPointer,
+}
+
+impl ComponentStack {
+    /// Maps a stack.
+    pub(super) fn new() -> io::Result<Self> {
+        let length = STACK_BYTES + GUARD_BYTES;
+        let flags = libc::MAP_ANONYMOUS | libc::MAP_PRIVATE | libc::MAP_NORESERVE;
+        // SAFETY: a new anonymous mapping at an address that the kernel chooses.
+        let start = unsafe { libc::mmap(ptr::null_mut(), length, libc::PROT_NONE, flags, -1, 0) };
+        if start == libc::MAP_FAILED {
+            return Err(io::Error::last_os_error());
+        }
+        let limit = NonZeroUsize::new(start as usize)
+            .ok_or_else(|| io::Error::other("the kernel mapped a stack at address zero"))?;
+        let base = limit
+            .checked_add(length)
+            .ok_or_else(|| io::Error::other("the kernel mapped a stack at the end of memory"))?;
+        let stack = Self { base, limit };
+        let usable = (limit.get() + GUARD_BYTES) as *mut libc::c_void;
+        // SAFETY: the range is the upper part of the mapping made above.
+        let result =
+            unsafe { libc::mprotect(usable, STACK_BYTES, libc::PROT_READ | libc::PROT_WRITE) };
+        if result != 0 {
+            return Err(io::Error::last_os_error());
+        }
+        Ok(stack)
+    }
+
+    /// Whether `address` lies in the guard area: a stack pointer or a fault there is an overflow.
+    pub(super) fn guard_contains(limit: usize, address: usize) -> bool {
+        (limit..limit + GUARD_BYTES).contains(&address)
+    }
+}
+
+impl Drop for ComponentStack {
+    fn drop(&mut self) {
+        let length = self.base.get() - self.limit.get();
+        // SAFETY: the mapping was made in `new`; nothing runs on it, the coroutine is finished.
+        unsafe { libc::munmap(self.limit.get() as *mut libc::c_void, length) };
+    }
+}
+
+// SAFETY: base and limit are page-aligned ends of one mapping whose lowest part is inaccessible.
+unsafe impl Stack for ComponentStack {
+    fn base(&self) -> StackPointer {
+        self.base
+    }
+    fn limit(&self) -> StackPointer {
+        self.limit
+    }
+}

@@ -1,0 +1,237 @@
+//! The trap handler: tells a component's fault from the container's and takes the component off
+//! the processor without touching a frame of ours (ARCHITECTURE, 'The guard').
+//!
+//! It runs on an alternate stack inside a signal, so it allocates nothing, takes no lock, and reads
+//! only memory that was prepared before the component was entered.
+
+use std::cell::Cell;
+use std::io;
+use std::mem;
+use std::ptr;
+use std::sync::Once;
+
+use corosensei::trap::CoroutineTrapHandler;
+
+use super::copy;
+use super::loss::Loss;
+use super::registers;
+use super::stack::ComponentStack;
+
+/// Size of the stack that the handler runs on: the signal frame with all vector registers takes
+/// about 4 KiB, the handler little more; the rest is for safety.
+const HANDLER_STACK_BYTES: usize = 64 * 1024;
+
+/// The synchronous signals, and abort.
+const SIGNALS: [libc::c_int; 6] = [
+    libc::SIGSEGV,
+    libc::SIGBUS,
+    libc::SIGFPE,
+    libc::SIGILL,
+    libc::SIGTRAP,
+    libc::SIGABRT,
+];
+
+/// What the handler saw.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Trap {
+    /// Signal number.
+    pub signal: i32,
+    /// `si_code`.
+    pub code: i32,
+    /// `si_addr`: the address that could not be accessed, or the faulting instruction.
+    pub address: usize,
+    /// Instruction pointer.
+    pub instruction_pointer: usize,
+    /// Whether the stack's guard area was hit.
+    pub stack_overflow: bool,
+}
+
+/// How a coroutine ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Ended {
+    /// The container asked for it.
+    Asked,
+    /// A trap took the component off.
+    Trapped(Trap),
+}
+
+/// Addresses of executable code, end exclusive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CodeRange {
+    /// First address.
+    pub start: usize,
+    /// One past the last.
+    pub end: usize,
+}
+
+/// What the handler must know of the component that this thread is inside of.
+pub(super) struct Frame {
+    pub(super) trap: CoroutineTrapHandler<Ended>,
+    pub(super) limit: usize,
+    pub(super) code: CodeRange,
+    pub(super) loss: *const Loss,
+    /// The component that called a service of this one, on the same thread.
+    pub(super) outer: *const Frame,
+    pub(super) component: u32,
+    /// Opaque to the handler: the host context, for calls that end the component from inside.
+    pub(super) context: *const super::host::HostSide,
+}
+
+thread_local! {
+    // Const-initialised and without a destructor, so that the handler may read it.
+    static CURRENT: Cell<*const Frame> = const { Cell::new(ptr::null()) };
+    static HANDLER_STACK: Cell<bool> = const { Cell::new(false) };
+}
+
+/// The frame of the component that this thread is inside of; null outside.
+pub(super) fn current() -> *const Frame {
+    CURRENT.get()
+}
+
+/// How many frames there are, one inside the other.
+pub(super) fn depth() -> usize {
+    let mut depth = 0;
+    let mut next = current();
+    // SAFETY: null, or frames of calls that are under way on this thread.
+    while let Some(frame) = unsafe { next.as_ref() } {
+        depth += 1;
+        next = frame.outer;
+    }
+    depth
+}
+
+/// Enters or leaves a component.
+pub(super) fn set_current(frame: *const Frame) {
+    CURRENT.set(frame);
+}
+
+/// Installs the handlers, once a process. Idempotent.
+pub(super) fn install() {
+    static INSTALLED: Once = Once::new();
+    INSTALLED.call_once(|| {
+        for signal in SIGNALS {
+            // SAFETY: an all-zero action is a valid one; the fields that matter are set below.
+            let mut action: libc::sigaction = unsafe { mem::zeroed() };
+            action.sa_flags = libc::SA_SIGINFO | libc::SA_ONSTACK | libc::SA_NODEFER;
+            action.sa_sigaction = handle as *const () as usize;
+            // SAFETY: the handler keeps to what a signal handler may do (module text).
+            unsafe { libc::sigaction(signal, &raw const action, ptr::null_mut()) };
+        }
+    });
+}
+
+/// Gives the calling thread a stack for the handler. Idempotent. The stack is leaked on purpose: a
+/// thread that runs components may be parked inside the handler for ever.
+pub(super) fn prepare_thread() -> io::Result<()> {
+    if HANDLER_STACK.get() {
+        return Ok(());
+    }
+    let memory = Box::leak(vec![0u8; HANDLER_STACK_BYTES].into_boxed_slice());
+    let stack = libc::stack_t {
+        ss_sp: memory.as_mut_ptr().cast(),
+        ss_flags: 0,
+        ss_size: memory.len(),
+    };
+    // SAFETY: the memory is leaked, so it outlives the thread.
+    if unsafe { libc::sigaltstack(&raw const stack, ptr::null_mut()) } != 0 {
+        return Err(io::Error::last_os_error());
+    }
+    HANDLER_STACK.set(true);
+    Ok(())
+}
+
+extern "C" fn handle(
+    signal: libc::c_int,
+    information: *mut libc::siginfo_t,
+    context: *mut libc::c_void,
+) {
+    // SAFETY: the kernel passes both for SA_SIGINFO handlers, valid for the time of the call.
+    let information = unsafe { &*information };
+    // SAFETY: as above; the handler is the only user of the context.
+    let context = unsafe { &mut *context.cast::<libc::ucontext_t>() };
+    let (instruction_pointer, stack_pointer) = registers::position(context);
+    if let Some(exit) = copy::fault_exit(instruction_pointer) {
+        registers::jump(context, exit);
+        return;
+    }
+    // SAFETY: null, or the frame of a call that is under way on this thread.
+    let frame = unsafe { CURRENT.get().as_ref() };
+    match frame {
+        Some(frame)
+            if frame.trap.stack_ptr_in_bounds(stack_pointer) && !sent_by_others(information) =>
+        {
+            let trap = record(
+                signal,
+                information,
+                frame,
+                instruction_pointer,
+                stack_pointer,
+            );
+            if (frame.code.start..frame.code.end).contains(&instruction_pointer) {
+                take_off(frame, trap, context);
+            } else {
+                // In the C library or the loader: a lock may be held. The thread stops here for ever.
+                // SAFETY: the loss outlives every frame that names it (contract of `Frame`).
+                unsafe { &*frame.loss }.publish_and_park(frame, trap);
+            }
+        }
+        _ => fail_container(signal),
+    }
+}
+
+/// Whether another process sent the signal with `kill`: that is meant for the container.
+fn sent_by_others(information: &libc::siginfo_t) -> bool {
+    if information.si_code != libc::SI_USER {
+        return false;
+    }
+    // SAFETY: for SI_USER the kernel fills the sender's process id; getpid has no precondition.
+    let (sender, own) = unsafe { (information.si_pid(), libc::getpid()) };
+    sender != own
+}
+
+fn record(
+    signal: i32,
+    information: &libc::siginfo_t,
+    frame: &Frame,
+    instruction_pointer: usize,
+    stack_pointer: usize,
+) -> Trap {
+    let address = if signal == libc::SIGABRT {
+        0
+    } else {
+        // SAFETY: the kernel fills the address for the synchronous signals.
+        unsafe { information.si_addr() as usize }
+    };
+    let overflow = matches!(signal, libc::SIGSEGV | libc::SIGBUS)
+        && (ComponentStack::guard_contains(frame.limit, address)
+            || ComponentStack::guard_contains(frame.limit, stack_pointer));
+    Trap {
+        signal,
+        code: information.si_code,
+        address,
+        instruction_pointer,
+        stack_overflow: overflow,
+    }
+}
+
+/// Makes the coroutine return `trap` when the handler returns.
+fn take_off(frame: &Frame, trap: Trap, context: &mut libc::ucontext_t) {
+    // SAFETY: the stack pointer is inside this coroutine; the registers are set as demanded below.
+    // The component wrote to nothing of ours but through host calls, which run on our own stack.
+    let registers = unsafe { frame.trap.setup_trap_handler(move || Ended::Trapped(trap)) };
+    registers::redirect(context, &registers);
+    // The component may have blocked signals; the kernel restores this mask on return.
+    // SAFETY: the mask is part of the context that is ours during the call.
+    unsafe { libc::sigemptyset(&raw mut context.uc_sigmask) };
+}
+
+/// Not a component's fault: the default action ends the process, with a core dump where the
+/// system writes one.
+fn fail_container(signal: libc::c_int) {
+    // SAFETY: both calls are allowed in signal handlers.
+    unsafe { libc::signal(signal, libc::SIG_DFL) };
+    if signal == libc::SIGABRT {
+        // SAFETY: as above. A synchronous signal comes again by itself when the handler returns.
+        unsafe { libc::raise(signal) };
+    }
+}

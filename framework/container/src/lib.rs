@@ -1,0 +1,22 @@
+//! The Steadfast container: loads shared-library components, connects their ports and runs them,
+//! each behind a guard, so that one component's crash is that component's alone.
+//!
+//! `framework/ARCHITECTURE.md` has the map. Data goes one way: a specification is assembled into
+//! a running system; what happens in it becomes events.
+
+pub mod assembly;
+pub mod clock;
+pub mod component;
+pub mod device;
+pub mod event_log;
+pub mod executor;
+pub mod guard;
+pub mod lane;
+pub mod library;
+pub mod port;
+pub mod schedule;
+pub mod status;
+pub mod summary;
+pub mod system;
+pub mod wake;
+pub mod world;

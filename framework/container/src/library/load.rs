@@ -1,0 +1,191 @@
+//! Loading: a private copy in memory for every instance, so that statics, thread-locals and locks
+//! of a dead copy stay dead. Never unloaded: Rust code with thread-locals cannot be.
+#![allow(unsafe_code)] // the loader, and the descriptor of a foreign library
+
+use std::fs;
+use std::io::Write as _;
+use std::mem;
+use std::os::fd::AsRawFd as _;
+use std::path::Path;
+
+use component_abi::{
+    ABI_MAGIC, ABI_MAJOR, ABI_MINOR, ENTRY_SYMBOL, Header, LAYOUT_HASH, LibraryDescriptor,
+};
+use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
+use rustix::fs::{MemfdFlags, SealFlags};
+
+use super::LibraryError;
+use super::description::{ComponentDescription, describe};
+use crate::guard::CodeRange;
+
+/// One loaded copy of a component library.
+#[derive(Debug, Clone)]
+pub struct LoadedLibrary {
+    /// What it says of itself.
+    pub description: ComponentDescription,
+    /// Where its code is.
+    pub code: CodeRange,
+}
+
+impl LoadedLibrary {
+    /// Loads a fresh copy of the library at `path`.
+    ///
+    /// # Errors
+    /// If the file is unreadable, no library, no component, or for another container.
+    pub fn load(path: &Path) -> Result<Self, LibraryError> {
+        let library = open_copy(path)?;
+        // SAFETY: only the address is taken; what it points to is checked below.
+        let symbol = unsafe { library.get::<LibraryDescriptor>(ENTRY_SYMBOL.as_bytes()) };
+        let Ok(symbol) = symbol else {
+            return Err(LibraryError::NoComponent {
+                path: path.to_owned(),
+                symbol: ENTRY_SYMBOL,
+            });
+        };
+        let descriptor: *const LibraryDescriptor = symbol.as_raw_ptr().cast_const().cast();
+        // Never unloaded: see the module text.
+        mem::forget(library);
+        // SAFETY: a header is the first field of every version of the descriptor; the probe has
+        // read it before, in a process of its own, if the container probes.
+        let header = unsafe { descriptor.cast::<Header>().read() };
+        check_header(&header, path)?;
+        // SAFETY: the header says that this is a whole descriptor of our version; the copy is
+        // never unloaded.
+        let descriptor: &'static LibraryDescriptor = unsafe { &*descriptor };
+        let description = describe(descriptor).map_err(|reason| LibraryError::Descriptor {
+            path: path.to_owned(),
+            reason,
+        })?;
+        let code = code_around(std::ptr::from_ref(descriptor).addr()).ok_or_else(|| {
+            LibraryError::Descriptor {
+                path: path.to_owned(),
+                reason: "it has no executable segment".to_owned(),
+            }
+        })?;
+        Ok(Self { description, code })
+    }
+}
+
+/// Copies the file to sealed memory and loads it from there under a name that is used once. The
+/// memory file stays open: the loader compares names, and a number used again would give the old
+/// library.
+fn open_copy(path: &Path) -> Result<Library, LibraryError> {
+    let unreadable = |error: std::io::Error| LibraryError::Unreadable {
+        path: path.to_owned(),
+        error,
+    };
+    let content = fs::read(path).map_err(unreadable)?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let flags = MemfdFlags::CLOEXEC | MemfdFlags::ALLOW_SEALING;
+    let memory =
+        rustix::fs::memfd_create(name.as_ref(), flags).map_err(|error| unreadable(error.into()))?;
+    let mut memory = fs::File::from(memory);
+    memory.write_all(&content).map_err(unreadable)?;
+    let seals = SealFlags::SEAL | SealFlags::SHRINK | SealFlags::GROW | SealFlags::WRITE;
+    rustix::fs::fcntl_add_seals(&memory, seals).map_err(|error| unreadable(error.into()))?;
+    let address = format!("/proc/self/fd/{}", memory.as_raw_fd());
+    // SAFETY: runs the library's constructors; the probe has run them before in a process of its
+    // own, if the container probes.
+    let library = unsafe { Library::open(Some(&address), RTLD_NOW | RTLD_LOCAL) };
+    let library = library.map_err(|error| LibraryError::NotALibrary {
+        path: path.to_owned(),
+        reason: loader_words(&error, &address),
+    })?;
+    mem::forget(memory);
+    Ok(library)
+}
+
+fn loader_words(error: &libloading::Error, address: &str) -> String {
+    let mut text = error.to_string();
+    if let libloading::Error::DlOpen { source } = error {
+        text = source.to_string();
+    }
+    text.replace(&format!("{address}: "), "")
+}
+
+fn check_header(header: &Header, path: &Path) -> Result<(), LibraryError> {
+    if header.magic != ABI_MAGIC {
+        return Err(LibraryError::NoComponent {
+            path: path.to_owned(),
+            symbol: ENTRY_SYMBOL,
+        });
+    }
+    let ours = format!("{ABI_MAJOR}.{ABI_MINOR}");
+    let fits = header.major == ABI_MAJOR && header.minor <= ABI_MINOR;
+    let whole = header.size >= size_of::<LibraryDescriptor>() as u64;
+    if !fits {
+        return Err(LibraryError::Version {
+            path: path.to_owned(),
+            theirs: format!("{}.{}", header.major, header.minor),
+            ours,
+        });
+    }
+    if !whole || header.layout_hash != LAYOUT_HASH {
+        return Err(LibraryError::Version {
+            path: path.to_owned(),
+            theirs: format!(
+                "{}.{} with other table layouts (size {}, hash {:#x})",
+                header.major, header.minor, header.size, header.layout_hash
+            ),
+            ours: format!(
+                "{ours} (size {}, hash {LAYOUT_HASH:#x})",
+                size_of::<LibraryDescriptor>()
+            ),
+        });
+    }
+    Ok(())
+}
+
+/// The executable segments of the loaded object that contains `address`.
+fn code_around(address: usize) -> Option<CodeRange> {
+    struct Search {
+        address: usize,
+        found: Option<CodeRange>,
+    }
+
+    unsafe extern "C" fn visit(
+        information: *mut libc::dl_phdr_info,
+        _size: libc::size_t,
+        data: *mut libc::c_void,
+    ) -> libc::c_int {
+        // SAFETY: the loader passes a valid record for the time of the call.
+        let information = unsafe { &*information };
+        // SAFETY: `data` is the search that was passed to `dl_iterate_phdr`.
+        let search = unsafe { &mut *data.cast::<Search>() };
+        let count = usize::from(information.dlpi_phnum);
+        // SAFETY: the loader's table has `dlpi_phnum` entries.
+        let segments = unsafe { std::slice::from_raw_parts(information.dlpi_phdr, count) };
+        let range = |segment: &libc::Elf64_Phdr| {
+            let start = information.dlpi_addr as usize + segment.p_vaddr as usize;
+            CodeRange {
+                start,
+                end: start + segment.p_memsz as usize,
+            }
+        };
+        let loaded = segments.iter().filter(|one| one.p_type == libc::PT_LOAD);
+        let contains = loaded
+            .clone()
+            .map(range)
+            .any(|range| (range.start..range.end).contains(&search.address));
+        if !contains {
+            return 0;
+        }
+        for code in loaded
+            .filter(|one| one.p_flags & libc::PF_X != 0)
+            .map(range)
+        {
+            let found = search.found.get_or_insert(code);
+            found.start = found.start.min(code.start);
+            found.end = found.end.max(code.end);
+        }
+        1
+    }
+
+    let mut search = Search {
+        address,
+        found: None,
+    };
+    // SAFETY: the callback keeps to its contract and `search` outlives the call.
+    unsafe { libc::dl_iterate_phdr(Some(visit), (&raw mut search).cast()) };
+    search.found
+}

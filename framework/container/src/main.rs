@@ -1,0 +1,42 @@
+//! The `steadfast` command.
+#![forbid(unsafe_code)]
+
+mod commands;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use commands::check::{self, CheckArguments};
+use commands::run::{self, RunArguments};
+
+/// Fault tolerance for component-based robots, declared in XML.
+#[derive(Debug, Parser)]
+#[command(name = "steadfast", version, about)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Check profiles: every problem with its place and what to do about it.
+    Check(CheckArguments),
+    /// Run an application.
+    Run(RunArguments),
+    /// Load a library and say by the exit code whether that works.
+    #[command(hide = true)]
+    ProbeLibrary {
+        /// The library.
+        path: PathBuf,
+    },
+}
+
+fn main() -> ExitCode {
+    match Arguments::parse().command {
+        Command::Check(arguments) => check::run(&arguments),
+        Command::Run(arguments) => run::run(&arguments),
+        Command::ProbeLibrary { path } => container::library::probe_main(&path),
+    }
+}

@@ -1,0 +1,243 @@
+//! Connections between ports: one buffer for each, so that fan-out is a loop in the writer and
+//! neither side ever waits for the other.
+
+mod mailbox;
+mod overwriting_queue;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use system_model::specification::QueuePolicy;
+
+pub use mailbox::{MailReceiver, MailSender, Sent, mailbox};
+use overwriting_queue::{Reader, Writer};
+
+/// A datum on its way, with its origin.
+#[derive(Debug, Clone)]
+pub struct Datum {
+    /// When it was written, by the container's clock, in nanoseconds.
+    pub stamp_ns: u64,
+    /// Incarnation of the instance that wrote it.
+    pub incarnation: u32,
+    /// The bytes of its type.
+    pub bytes: Box<[u8]>,
+}
+
+/// The writing end of a connection.
+pub struct Sender {
+    buffer: SendBuffer,
+    counts: Arc<Counts>,
+}
+
+/// The reading end of a connection.
+pub struct Receiver {
+    buffer: ReceiveBuffer,
+    counts: Arc<Counts>,
+}
+
+#[derive(Debug, Default)]
+struct Counts {
+    sent: AtomicU64,
+    dropped: AtomicU64,
+}
+
+enum SendBuffer {
+    Last(triple_buffer::Input<Datum>),
+    Queue(Writer<Datum>),
+}
+
+enum ReceiveBuffer {
+    Last(triple_buffer::Output<Datum>),
+    Fifo(Reader<Datum>),
+    Lifo {
+        arrivals: Reader<Datum>,
+        /// Newest last; never grows beyond its capacity.
+        stack: Vec<Datum>,
+        taken: Datum,
+    },
+}
+
+/// Makes a connection for data of `size` bytes that keeps as much as the policy says.
+pub fn connection(policy: QueuePolicy, queue_size: usize, size: usize) -> (Sender, Receiver) {
+    let empty = Datum {
+        stamp_ns: 0,
+        incarnation: 0,
+        bytes: vec![0; size].into_boxed_slice(),
+    };
+    let queue_size = queue_size.max(1);
+    let counts = Arc::new(Counts::default());
+    let (send, receive) = match policy {
+        QueuePolicy::Last => {
+            let (input, output) = triple_buffer::triple_buffer(&empty);
+            (SendBuffer::Last(input), ReceiveBuffer::Last(output))
+        }
+        QueuePolicy::Fifo => {
+            let (writer, reader) = overwriting_queue::queue(queue_size, &empty);
+            (SendBuffer::Queue(writer), ReceiveBuffer::Fifo(reader))
+        }
+        QueuePolicy::Lifo => {
+            let (writer, arrivals) = overwriting_queue::queue(queue_size, &empty);
+            let receive = ReceiveBuffer::Lifo {
+                arrivals,
+                stack: Vec::with_capacity(queue_size),
+                taken: empty,
+            };
+            (SendBuffer::Queue(writer), receive)
+        }
+    };
+    let sender = Sender {
+        buffer: send,
+        counts: Arc::clone(&counts),
+    };
+    let receiver = Receiver {
+        buffer: receive,
+        counts,
+    };
+    (sender, receiver)
+}
+
+impl Sender {
+    /// Sends a datum that `fill` writes; nothing is sent if it answers false. Never waits.
+    #[inline]
+    pub fn send(
+        &mut self,
+        stamp_ns: u64,
+        incarnation: u32,
+        fill: impl FnOnce(&mut [u8]) -> bool,
+    ) -> bool {
+        let datum = match &mut self.buffer {
+            SendBuffer::Last(input) => input.input_buffer_mut(),
+            SendBuffer::Queue(writer) => writer.slot(),
+        };
+        if !fill(&mut datum.bytes) {
+            return false;
+        }
+        datum.stamp_ns = stamp_ns;
+        datum.incarnation = incarnation;
+        increase(&self.counts.sent);
+        match &mut self.buffer {
+            SendBuffer::Last(input) => {
+                input.publish();
+            }
+            SendBuffer::Queue(writer) => {
+                if writer.publish() {
+                    increase(&self.counts.dropped);
+                }
+            }
+        }
+        true
+    }
+
+    /// Data sent so far.
+    pub fn sent(&self) -> u64 {
+        self.counts.sent.load(Ordering::Relaxed)
+    }
+}
+
+impl Receiver {
+    /// The next datum by the connection's policy, if one has arrived since the last was taken.
+    #[inline]
+    pub fn receive(&mut self) -> Option<&Datum> {
+        match &mut self.buffer {
+            ReceiveBuffer::Last(output) => output.update().then(|| &*output.output_buffer()),
+            ReceiveBuffer::Fifo(reader) => reader.take(),
+            ReceiveBuffer::Lifo {
+                arrivals,
+                stack,
+                taken,
+            } => {
+                while let Some(datum) = arrivals.take() {
+                    push_newest(stack, datum, &self.counts);
+                }
+                *taken = stack.pop()?;
+                Some(taken)
+            }
+        }
+    }
+
+    /// Drops everything that has arrived.
+    pub fn clear(&mut self) {
+        while self.receive().is_some() {}
+    }
+
+    /// Data dropped because the reader did not keep up.
+    pub fn dropped(&self) -> u64 {
+        self.counts.dropped.load(Ordering::Relaxed)
+    }
+}
+
+/// Adds to a stack that is full by forgetting the oldest.
+fn push_newest(stack: &mut Vec<Datum>, datum: &Datum, counts: &Counts) {
+    if stack.len() == stack.capacity() {
+        stack.remove(0);
+        increase(&counts.dropped);
+    }
+    stack.push(datum.clone());
+}
+
+/// Adds one to a counter that has a single writer at a time: a plain store, not a locked one.
+fn increase(counter: &AtomicU64) {
+    counter.store(counter.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn put(sender: &mut Sender, value: u8) {
+        assert!(sender.send(u64::from(value), 1, |bytes| {
+            bytes.fill(value);
+            true
+        }));
+    }
+
+    fn all(receiver: &mut Receiver) -> Vec<u8> {
+        let mut found = Vec::new();
+        while let Some(datum) = receiver.receive() {
+            found.push(datum.bytes[0]);
+        }
+        found
+    }
+
+    #[test]
+    fn each_policy_keeps_what_it_should() {
+        let cases: [(QueuePolicy, usize, &[u8], &[u8], u64); 5] = [
+            (QueuePolicy::Last, 1, &[1, 2, 3], &[3], 0),
+            (QueuePolicy::Fifo, 3, &[1, 2], &[1, 2], 0),
+            (QueuePolicy::Fifo, 3, &[1, 2, 3, 4, 5], &[3, 4, 5], 2),
+            (QueuePolicy::Lifo, 3, &[1, 2, 3], &[3, 2, 1], 0),
+            (QueuePolicy::Lifo, 2, &[1, 2, 3, 4], &[4, 3], 2),
+        ];
+        for (policy, size, sent, expected, dropped) in cases {
+            let (mut sender, mut receiver) = connection(policy, size, 8);
+            assert!(receiver.receive().is_none(), "{policy:?} starts empty");
+            for value in sent {
+                put(&mut sender, *value);
+            }
+            assert_eq!(all(&mut receiver), expected, "{policy:?} of {size}");
+            assert_eq!(receiver.dropped(), dropped, "{policy:?} of {size}");
+            assert_eq!(sender.sent(), sent.len() as u64);
+        }
+    }
+
+    #[test]
+    fn a_fill_that_fails_sends_nothing() {
+        for policy in [QueuePolicy::Last, QueuePolicy::Fifo, QueuePolicy::Lifo] {
+            let (mut sender, mut receiver) = connection(policy, 4, 8);
+            assert!(!sender.send(0, 1, |_bytes| false));
+            assert!(receiver.receive().is_none());
+        }
+    }
+
+    #[test]
+    fn clearing_forgets_what_had_arrived() {
+        for policy in [QueuePolicy::Last, QueuePolicy::Fifo, QueuePolicy::Lifo] {
+            let (mut sender, mut receiver) = connection(policy, 4, 8);
+            put(&mut sender, 1);
+            receiver.clear();
+            assert!(receiver.receive().is_none());
+            put(&mut sender, 2);
+            assert_eq!(all(&mut receiver), [2]);
+        }
+    }
+}

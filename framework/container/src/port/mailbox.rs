@@ -1,0 +1,138 @@
+//! A bounded queue between one sender and one receiver that refuses when it is full: events and
+//! nonblocking calls must not vanish silently. Buffers travel forth and back, so nothing is
+//! allocated after it was made.
+
+use super::Datum;
+
+/// The sending end.
+pub struct MailSender {
+    filled: rtrb::Producer<Datum>,
+    empty: rtrb::Consumer<Datum>,
+}
+
+/// The receiving end.
+pub struct MailReceiver {
+    filled: rtrb::Consumer<Datum>,
+    empty: rtrb::Producer<Datum>,
+}
+
+/// Makes a mailbox for `capacity` messages of `size` bytes.
+pub fn mailbox(capacity: usize, size: usize) -> (MailSender, MailReceiver) {
+    let (fill, filled) = rtrb::RingBuffer::new(capacity);
+    let (mut give_back, empty) = rtrb::RingBuffer::new(capacity);
+    for _ in 0..capacity {
+        let message = Datum {
+            stamp_ns: 0,
+            incarnation: 0,
+            bytes: vec![0; size].into_boxed_slice(),
+        };
+        // Never full: it has a place for every message.
+        let _fits = give_back.push(message);
+    }
+    (
+        MailSender {
+            filled: fill,
+            empty,
+        },
+        MailReceiver {
+            filled,
+            empty: give_back,
+        },
+    )
+}
+
+/// What became of a message.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sent {
+    /// It is in the queue.
+    Queued,
+    /// The queue is full.
+    Full,
+    /// The content could not be read.
+    Unreadable,
+}
+
+impl MailSender {
+    /// Sends a message that `fill` writes.
+    pub fn send(
+        &mut self,
+        stamp_ns: u64,
+        incarnation: u32,
+        fill: impl FnOnce(&mut [u8]) -> bool,
+    ) -> Sent {
+        let Ok(mut message) = self.empty.pop() else {
+            return Sent::Full;
+        };
+        let readable = fill(&mut message.bytes);
+        message.stamp_ns = stamp_ns;
+        // Incarnations count from 1: 0 marks a message that the receiver throws away, because its
+        // buffer can only travel back through the receiver.
+        message.incarnation = if readable { incarnation } else { 0 };
+        // Never full: there are as many messages as places.
+        let _fits = self.filled.push(message);
+        if readable {
+            Sent::Queued
+        } else {
+            Sent::Unreadable
+        }
+    }
+}
+
+impl MailReceiver {
+    /// Takes the oldest message; to be handed back with [`Self::give_back`].
+    pub fn take(&mut self) -> Option<Datum> {
+        loop {
+            let message = self.filled.pop().ok()?;
+            if message.incarnation != 0 {
+                return Some(message);
+            }
+            self.give_back(message);
+        }
+    }
+
+    /// Hands a message's buffer back.
+    pub fn give_back(&mut self, message: Datum) {
+        // Never full: there are as many messages as places.
+        let _fits = self.empty.push(message);
+    }
+
+    /// Throws away everything that has arrived.
+    pub fn clear(&mut self) {
+        while let Some(message) = self.take() {
+            self.give_back(message);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_full_mailbox_refuses_and_keeps_the_order() {
+        let (mut sender, mut receiver) = mailbox(2, 4);
+        let mut send = |value: u8| {
+            sender.send(0, 1, |bytes| {
+                bytes[0] = value;
+                value != 9
+            })
+        };
+        assert_eq!(send(1), Sent::Queued);
+        assert_eq!(send(2), Sent::Queued);
+        assert_eq!(send(3), Sent::Full);
+        let first = receiver.take().expect("queued");
+        assert_eq!(first.bytes[0], 1);
+        receiver.give_back(first);
+        assert_eq!(send(9), Sent::Unreadable);
+        let second = receiver.take().expect("queued");
+        assert_eq!(second.bytes[0], 2);
+        receiver.give_back(second);
+        assert!(
+            receiver.take().is_none(),
+            "the unreadable one is not delivered"
+        );
+        assert_eq!(send(4), Sent::Queued);
+        receiver.clear();
+        assert!(receiver.take().is_none());
+    }
+}

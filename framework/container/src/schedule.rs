@@ -1,0 +1,257 @@
+//! When executors run: on threads of their own by the machine's clock, or one after the other in
+//! simulated time.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use system_model::specification::ExecutionKind;
+
+use crate::component::{ComponentCell, Environment};
+use crate::event_log::Event;
+use crate::executor::{Executor, mark_lost};
+use crate::guard::loss::LostThread;
+use crate::lane::{Lane, Work};
+use crate::wake::Wake;
+use crate::world::World;
+
+/// An executor that nothing is due for sleeps at most this long, so that it notices being stopped
+/// even if no word reaches it.
+const LONGEST_SLEEP: Duration = Duration::from_millis(500);
+
+/// In simulated time a cycle of an executor without a period takes this long; without it two
+/// components that wake each other would stop the clock.
+const SIMULATED_CYCLE_NS: u64 = 1_000;
+
+/// An executor on a thread of its own.
+pub struct RealTime {
+    executor: Executor,
+    components: Arc<[Arc<ComponentCell>]>,
+    environment: Arc<Environment>,
+    /// When the next cycle (or the one that was cut off) is or was due.
+    release_ns: u64,
+}
+
+impl RealTime {
+    /// Not begun; the first cycle is due at once.
+    pub fn new(
+        executor: Executor,
+        components: Arc<[Arc<ComponentCell>]>,
+        environment: Arc<Environment>,
+    ) -> Self {
+        Self {
+            executor,
+            components,
+            environment,
+            release_ns: 0,
+        }
+    }
+
+    fn period_ns(&self) -> u64 {
+        nanoseconds(self.executor.period)
+    }
+
+    /// Sleeps until something is due; false if the lane is to stop.
+    fn wait(&mut self, lane: &Lane) -> bool {
+        loop {
+            if lane.is_stopping() {
+                return false;
+            }
+            let now_ns = self.environment.clock.now_ns();
+            let periodic = self.period_ns() > 0;
+            if periodic && now_ns >= self.release_ns {
+                return true;
+            }
+            if !periodic && self.executor.wake.take() {
+                self.release_ns = now_ns;
+                return true;
+            }
+            let sleep = if periodic {
+                Duration::from_nanos(self.release_ns - now_ns)
+            } else {
+                LONGEST_SLEEP
+            };
+            self.executor.wake.sleep(sleep.min(LONGEST_SLEEP));
+        }
+    }
+
+    /// Sets the next release; a cycle that took longer than its period is reported, and the next
+    /// one is due at once, without a burst to catch up.
+    fn finish_cycle(&mut self, lane: &Lane) {
+        let period_ns = self.period_ns();
+        if period_ns == 0 {
+            return;
+        }
+        let now_ns = self.environment.clock.now_ns();
+        let next_ns = self.release_ns + period_ns;
+        if now_ns <= next_ns {
+            self.release_ns = next_ns;
+            return;
+        }
+        self.executor.overran(lane);
+        let overrun = Event::Overrun {
+            executor: self.executor.name.clone(),
+            cycle: self.executor.cycles,
+            late_ns: now_ns - next_ns,
+        };
+        self.environment.events.record(now_ns, overrun);
+        self.release_ns = now_ns;
+    }
+}
+
+impl Work for RealTime {
+    fn run(&mut self, lane: &Lane) {
+        if self.release_ns == 0 {
+            self.release_ns = self.environment.clock.now_ns();
+        }
+        while self.executor.is_in_cycle() || self.wait(lane) {
+            let now_ns = self.environment.clock.now_ns();
+            self.executor.cycle(now_ns, lane);
+            self.finish_cycle(lane);
+        }
+    }
+
+    fn after_loss(&mut self, lost: &LostThread) {
+        mark_lost(&self.components, lost);
+    }
+
+    fn waker(&self) -> Option<Arc<Wake>> {
+        Some(Arc::clone(&self.executor.wake))
+    }
+}
+
+/// All executors on one thread, in simulated time: ordered by time, priority, name.
+pub struct Simulated {
+    executors: Vec<Executor>,
+    components: Arc<[Arc<ComponentCell>]>,
+    /// When each is due next; for one without a period, the earliest time it may run again.
+    due_ns: Vec<u64>,
+    /// The one that was running when a thread was lost.
+    running: Option<usize>,
+    environment: Arc<Environment>,
+    world: Option<Arc<World>>,
+    end_ns: u64,
+}
+
+impl Simulated {
+    /// Not begun. Ends at `end` of simulated time, or when the robot has reached its target.
+    pub fn new(
+        mut executors: Vec<Executor>,
+        components: Arc<[Arc<ComponentCell>]>,
+        environment: Arc<Environment>,
+        world: Option<Arc<World>>,
+        end: Option<Duration>,
+    ) -> Self {
+        executors.sort_by(|a, b| (b.priority, &a.name).cmp(&(a.priority, &b.name)));
+        Self {
+            due_ns: vec![0; executors.len()],
+            executors,
+            components,
+            running: None,
+            environment,
+            world,
+            end_ns: end.map_or(u64::MAX, nanoseconds),
+        }
+    }
+
+    /// When an executor wants to run next.
+    fn due(&self, index: usize) -> Option<u64> {
+        let executor = &self.executors[index];
+        let wanted = executor.kind.has_period() || executor.wake.is_pending();
+        wanted.then(|| self.due_ns[index])
+    }
+
+    /// The next executor by time; the order of `executors` decides among equals.
+    fn next(&self) -> Option<(u64, usize)> {
+        let now_ns = self.environment.clock.now_ns();
+        (0..self.executors.len())
+            .filter_map(|index| Some((self.due(index)?.max(now_ns), index)))
+            .min()
+    }
+
+    fn run_executor(&mut self, index: usize, lane: &Lane) {
+        self.running = Some(index);
+        let now_ns = self.environment.clock.now_ns();
+        let executor = &mut self.executors[index];
+        if !executor.is_in_cycle() {
+            executor.wake.take();
+        }
+        executor.cycle(now_ns, lane);
+        self.due_ns[index] = if executor.kind.has_period() {
+            self.due_ns[index] + nanoseconds(executor.period)
+        } else {
+            now_ns + SIMULATED_CYCLE_NS
+        };
+        self.running = None;
+    }
+
+    /// Moves time to `time_ns`; false if the run ends before.
+    fn advance(&self, time_ns: u64) -> bool {
+        let time_ns = time_ns.min(self.end_ns);
+        if let Some(world) = &self.world
+            && world.advance_to(Duration::from_nanos(time_ns), &self.environment)
+        {
+            return false;
+        }
+        self.environment.clock.advance_to(time_ns);
+        time_ns < self.end_ns
+    }
+}
+
+impl Work for Simulated {
+    fn run(&mut self, lane: &Lane) {
+        loop {
+            if let Some(index) = self.running {
+                self.run_executor(index, lane);
+                continue;
+            }
+            if lane.is_stopping() {
+                return;
+            }
+            let Some((time_ns, index)) = self.next() else {
+                // Nothing will ever happen by itself: only the world moves until the end.
+                self.idle_until_end(lane);
+                return;
+            };
+            if time_ns > self.environment.clock.now_ns() && !self.advance(time_ns) {
+                return;
+            }
+            self.run_executor(index, lane);
+        }
+    }
+
+    fn after_loss(&mut self, lost: &LostThread) {
+        mark_lost(&self.components, lost);
+    }
+}
+
+impl Simulated {
+    fn idle_until_end(&self, lane: &Lane) {
+        /// Steps in which an idle run goes to its end, so that it can be stopped.
+        const IDLE_STEP_NS: u64 = 100_000_000;
+        if self.end_ns == u64::MAX {
+            return;
+        }
+        while !lane.is_stopping() {
+            let next = self.environment.clock.now_ns().saturating_add(IDLE_STEP_NS);
+            if !self.advance(next) {
+                return;
+            }
+        }
+    }
+}
+
+/// A duration in nanoseconds; 584 years are enough.
+fn nanoseconds(duration: Duration) -> u64 {
+    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
+}
+
+/// Kinds of executor that run by the clock.
+trait HasPeriod {
+    fn has_period(self) -> bool;
+}
+
+impl HasPeriod for ExecutionKind {
+    fn has_period(self) -> bool {
+        matches!(self, Self::Periodic | Self::PeriodicShared)
+    }
+}

@@ -1,0 +1,99 @@
+//! What the container knows of each component, readable from any thread at any time.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU8, AtomicU32, AtomicU64, Ordering};
+
+use system_model::life_cycle::LifeCycleState;
+
+/// Figures of one component. Each counter has one writer at a time: the thread inside it.
+#[derive(Debug)]
+pub struct ComponentStatus {
+    /// Instance name.
+    pub name: String,
+    state: AtomicU8,
+    incarnation: AtomicU32,
+    cycles: AtomicU64,
+    overruns: AtomicU64,
+    faults: AtomicU64,
+    last_fault: Mutex<Option<String>>,
+}
+
+const STATES: [LifeCycleState; 6] = [
+    LifeCycleState::Created,
+    LifeCycleState::Ready,
+    LifeCycleState::Active,
+    LifeCycleState::Inactive,
+    LifeCycleState::Error,
+    LifeCycleState::Destroyed,
+];
+
+impl ComponentStatus {
+    /// A component that was just created.
+    pub fn new(name: String) -> Self {
+        Self {
+            name,
+            state: AtomicU8::new(0),
+            incarnation: AtomicU32::new(1),
+            cycles: AtomicU64::new(0),
+            overruns: AtomicU64::new(0),
+            faults: AtomicU64::new(0),
+            last_fault: Mutex::new(None),
+        }
+    }
+
+    /// Life-cycle state.
+    pub fn state(&self) -> LifeCycleState {
+        STATES[usize::from(self.state.load(Ordering::Acquire)) % STATES.len()]
+    }
+
+    pub(crate) fn set_state(&self, state: LifeCycleState) {
+        let index = STATES.iter().position(|other| *other == state);
+        let index = index.and_then(|index| u8::try_from(index).ok());
+        self.state.store(index.unwrap_or(0), Ordering::Release);
+    }
+
+    /// Which instance of this component it is, counted from 1.
+    pub fn incarnation(&self) -> u32 {
+        self.incarnation.load(Ordering::Relaxed)
+    }
+
+    /// Completed `onExecute`.
+    pub fn cycles(&self) -> u64 {
+        self.cycles.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn count_cycle(&self) {
+        increase(&self.cycles);
+    }
+
+    /// Cycles of its executor that took longer than the period.
+    pub fn overruns(&self) -> u64 {
+        self.overruns.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn count_overrun(&self) {
+        increase(&self.overruns);
+    }
+
+    /// Faults so far.
+    pub fn faults(&self) -> u64 {
+        self.faults.load(Ordering::Relaxed)
+    }
+
+    /// The last fault, in words.
+    pub fn last_fault(&self) -> Option<String> {
+        self.last_fault.lock().ok()?.clone()
+    }
+
+    pub(crate) fn count_fault(&self, text: String) {
+        increase(&self.faults);
+        if let Ok(mut last) = self.last_fault.lock() {
+            *last = Some(text);
+        }
+    }
+}
+
+/// A plain store instead of a locked addition: there is one writer at a time.
+fn increase(counter: &AtomicU64) {
+    counter.store(counter.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
+}

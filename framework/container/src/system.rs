@@ -1,0 +1,397 @@
+//! A running application: brought up in order, run, and stopped in order, each with a deadline.
+
+mod bring_up;
+mod real_time;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use crossbeam::channel::Sender;
+use robot_simulation::Simulation;
+use system_model::life_cycle::Operation;
+use system_model::specification::ApplicationSpecification;
+
+use crate::assembly::{Assembly, AssemblyProblem, LibraryOptions, assemble};
+use crate::clock::Clock;
+use crate::component::{ComponentCell, Environment};
+use crate::device::Devices;
+use crate::event_log::{Event, EventLog, EventWriter};
+use crate::executor::Executor;
+use crate::lane::{Crew, Lane, remaining};
+use crate::schedule::{RealTime, Simulated};
+use crate::status::ComponentStatus;
+use crate::summary::{ApplicationSummary, ComponentSummary, Summary, application_state};
+use crate::world::World;
+
+use bring_up::{Agenda, Failure, Step};
+use real_time::WorldThread;
+
+/// Loading devices, models and maps takes time; a component that is not up by then hangs.
+const BRING_UP_LIMIT: Duration = Duration::from_secs(30);
+
+/// In which everything must have stopped: what a person waits after Ctrl-C before pulling the plug.
+const STOP_LIMIT: Duration = Duration::from_secs(3);
+
+/// Which clock an application runs by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ClockKind {
+    /// The machine's.
+    Real,
+    /// As fast as it goes, one thread, the same every time.
+    Simulated,
+}
+
+impl ClockKind {
+    /// The word used in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Real => "real",
+            Self::Simulated => "simulated",
+        }
+    }
+}
+
+/// How an application is run.
+#[derive(Debug)]
+pub struct RunOptions {
+    /// The clock.
+    pub clock: ClockKind,
+    /// For how long, by that clock; `None`: until stopped or the target is reached.
+    pub duration: Option<Duration>,
+    /// Seed of the simulated world, for the record.
+    pub seed: u64,
+    /// Where events are written.
+    pub events: Option<PathBuf>,
+    /// Where events are echoed for a person.
+    pub echo: Option<Sender<(u64, Event)>>,
+    /// How libraries are found and loaded.
+    pub libraries: LibraryOptions,
+}
+
+/// Why an application did not start. Nothing of it runs.
+#[derive(Debug, thiserror::Error)]
+pub enum StartError {
+    /// It cannot be assembled.
+    #[error("{}", list(.0))]
+    Assembly(Vec<AssemblyProblem>),
+    /// Components refused to be initialised or started.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    Components(Vec<Failure>),
+    /// Bringing it up took too long.
+    #[error(
+        "the application did not come up within {} s\n  help: a component hangs in onInitialize or onStart; the last state event tells which came before it",
+        BRING_UP_LIMIT.as_secs()
+    )]
+    Hangs,
+    /// The system refused threads or files.
+    #[error("the container cannot run: {0}")]
+    System(#[from] std::io::Error),
+}
+
+fn list(problems: &[AssemblyProblem]) -> String {
+    let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
+    lines.join("\n")
+}
+
+/// A running application.
+pub struct System {
+    application: String,
+    options: RunOptions,
+    environment: Arc<Environment>,
+    world: Option<Arc<World>>,
+    world_thread: Option<WorldThread>,
+    components: Arc<[Arc<ComponentCell>]>,
+    statuses: Vec<Arc<ComponentStatus>>,
+    crew: Arc<Crew>,
+    lanes: Vec<Arc<Lane>>,
+    writer: EventWriter,
+}
+
+impl System {
+    /// Assembles an application and brings it up; when this returns it runs.
+    ///
+    /// # Errors
+    /// If anything is wrong; then nothing of it runs.
+    pub fn start(
+        specification: &ApplicationSpecification,
+        simulation: Option<Simulation>,
+        mut options: RunOptions,
+    ) -> Result<Self, StartError> {
+        let real = options.clock == ClockKind::Real;
+        let world = simulation.map(|simulation| Arc::new(World::new(simulation, real)));
+        let (events, writer) =
+            EventLog::open(options.events.as_deref(), !real, options.echo.take())?;
+        let environment = Arc::new(Environment {
+            clock: if real {
+                Clock::real()
+            } else {
+                Clock::simulated()
+            },
+            events,
+            devices: Devices::new(world.clone()),
+        });
+        let assembly = assemble(specification, &options.libraries, &environment)
+            .map_err(StartError::Assembly)?;
+        let Assembly {
+            components,
+            statuses,
+            executors,
+        } = assembly;
+        let mut system = Self {
+            application: specification.name.clone(),
+            options,
+            environment,
+            world,
+            world_thread: None,
+            components: components.into(),
+            statuses,
+            crew: Crew::new()?,
+            lanes: Vec::new(),
+            writer,
+        };
+        system.bring_up()?;
+        system.launch(executors)?;
+        Ok(system)
+    }
+
+    /// What the container knows of each component.
+    pub fn statuses(&self) -> &[Arc<ComponentStatus>] {
+        &self.statuses
+    }
+
+    /// Time by the application's clock.
+    pub fn now(&self) -> Duration {
+        self.environment.clock.now()
+    }
+
+    /// The world, if there is one.
+    pub fn world(&self) -> Option<&Arc<World>> {
+        self.world.as_ref()
+    }
+
+    /// Why the run is over, if it is: waits at most `limit` for that.
+    pub fn wait(&self, limit: Duration) -> Option<&'static str> {
+        match self.options.clock {
+            ClockKind::Simulated => {
+                let ended = self.lanes.iter().all(|lane| lane.wait(limit));
+                ended.then(|| self.reason())
+            }
+            ClockKind::Real => {
+                let left = self
+                    .options
+                    .duration
+                    .map_or(limit, |duration| duration.saturating_sub(self.now()));
+                if !self.is_over() {
+                    std::thread::sleep(left.min(limit));
+                }
+                self.is_over().then(|| self.reason())
+            }
+        }
+    }
+
+    /// Stops everything in order and says what the run came to.
+    pub fn stop(mut self, reason: &'static str) -> (Summary, Option<std::io::Error>) {
+        let summary = self.summary(reason);
+        let deadline = Instant::now() + STOP_LIMIT;
+        for lane in &self.lanes {
+            lane.stop();
+        }
+        let all_ended = self.lanes.iter().all(|lane| lane.wait(remaining(deadline)));
+        if let Some(world_thread) = self.world_thread.take() {
+            world_thread.stop();
+        }
+        if all_ended {
+            self.shut_down(remaining(deadline).max(STOP_LIMIT / 3));
+        } else {
+            self.notice("a component did not return: it is left behind, not stopped");
+        }
+        let events_lost = self.environment.events.lost();
+        self.environment.events.record(
+            self.environment.clock.now_ns(),
+            Event::RunStopped {
+                reason,
+                events_lost,
+            },
+        );
+        (summary, self.close().err())
+    }
+
+    fn close(self) -> std::io::Result<()> {
+        self.crew.dismiss();
+        self.environment.events.finish();
+        self.writer.close()
+    }
+
+    fn notice(&self, message: &str) {
+        self.environment.events.record(
+            self.environment.clock.now_ns(),
+            Event::Notice {
+                message: message.to_owned(),
+            },
+        );
+    }
+
+    fn is_over(&self) -> bool {
+        let reached = self
+            .world
+            .as_ref()
+            .is_some_and(|world| world.has_reached_target());
+        let elapsed = self
+            .options
+            .duration
+            .is_some_and(|duration| self.now() >= duration);
+        reached || elapsed
+    }
+
+    fn reason(&self) -> &'static str {
+        let reached = self
+            .world
+            .as_ref()
+            .is_some_and(|world| world.has_reached_target());
+        if reached {
+            "target_reached"
+        } else {
+            "duration_elapsed"
+        }
+    }
+
+    fn summary(&self, ended_by: &'static str) -> Summary {
+        let application = ApplicationSummary {
+            state: application_state(self.statuses.iter().map(|status| status.state())),
+            ended_by,
+            time_s: self.now().as_secs_f64(),
+            clock: self.options.clock.name(),
+            seed: self.options.seed,
+            events_lost: self.environment.events.lost(),
+        };
+        Summary {
+            applications: [(self.application.clone(), application)].into(),
+            components: self
+                .statuses
+                .iter()
+                .map(|status| (status.name.clone(), ComponentSummary::of(status)))
+                .collect(),
+            robot: self.world.as_ref().map(|world| world.summary()),
+        }
+    }
+
+    /// Constructs and initialises all, then starts all. A component that traps or panics is in
+    /// ERROR and the rest goes on; one that says no stops the whole start.
+    fn bring_up(&mut self) -> Result<(), StartError> {
+        self.environment.events.record(
+            0,
+            Event::RunStarted {
+                application: self.application.clone(),
+                clock: self.options.clock.name(),
+                seed: self.options.seed,
+                components: self.components.len(),
+            },
+        );
+        for steps in [
+            [Step::Construct, Step::Operate(Operation::Initialize)].as_slice(),
+            [Step::Operate(Operation::Start)].as_slice(),
+        ] {
+            let result = self.perform(steps, false, BRING_UP_LIMIT);
+            match result {
+                Ok(failures) if failures.is_empty() => {}
+                Ok(failures) => {
+                    self.shut_down(STOP_LIMIT);
+                    self.abandon("start_refused");
+                    return Err(StartError::Components(failures));
+                }
+                Err(error) => {
+                    self.abandon("start_refused");
+                    return Err(error);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Ends the log of a start that came to nothing.
+    fn abandon(&self, reason: &'static str) {
+        let events_lost = self.environment.events.lost();
+        self.environment.events.record(
+            self.environment.clock.now_ns(),
+            Event::RunStopped {
+                reason,
+                events_lost,
+            },
+        );
+        self.environment.events.finish();
+        self.crew.dismiss();
+    }
+
+    /// Stops and destroys all, last first.
+    fn shut_down(&self, limit: Duration) {
+        let steps = [
+            Step::Operate(Operation::Stop),
+            Step::Operate(Operation::Destroy),
+        ];
+        // A component that fails while it is stopped is on record; nothing else can be done.
+        if self.perform(&steps, true, limit).is_err() {
+            self.notice("stopping the components took too long: some are left behind");
+        }
+    }
+
+    /// Performs steps on all components, on a lane of their own so that a hang or a lost thread
+    /// does not take the container along.
+    fn perform(
+        &self,
+        steps: &[Step],
+        last_first: bool,
+        limit: Duration,
+    ) -> Result<Vec<Failure>, StartError> {
+        let agenda = Agenda::new(Arc::clone(&self.components), steps.to_vec(), last_first);
+        let failures = agenda.failures();
+        let lane = Lane::new("life-cycle", Box::new(agenda));
+        self.crew.start(&lane, || {})?;
+        if !lane.wait(limit) {
+            return Err(StartError::Hangs);
+        }
+        Ok(failures.take())
+    }
+
+    fn launch(&mut self, executors: Vec<Executor>) -> Result<(), StartError> {
+        match self.options.clock {
+            ClockKind::Simulated => {
+                let work = Simulated::new(
+                    executors,
+                    Arc::clone(&self.components),
+                    Arc::clone(&self.environment),
+                    self.world.clone(),
+                    self.options.duration,
+                );
+                let lane = Lane::new("simulated", Box::new(work));
+                self.crew.start(&lane, || {})?;
+                self.lanes.push(lane);
+            }
+            ClockKind::Real => {
+                if let Some(world) = &self.world {
+                    let thread =
+                        WorldThread::start(Arc::clone(world), Arc::clone(&self.environment))?;
+                    self.world_thread = Some(thread);
+                }
+                for executor in executors {
+                    self.launch_executor(executor)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn launch_executor(&mut self, executor: Executor) -> Result<(), StartError> {
+        let prepare = real_time::preparation(&executor, Arc::clone(&self.environment));
+        let name = executor.name.clone();
+        let work = RealTime::new(
+            executor,
+            Arc::clone(&self.components),
+            Arc::clone(&self.environment),
+        );
+        let lane = Lane::new(name, Box::new(work));
+        self.crew.start(&lane, prepare)?;
+        self.lanes.push(lane);
+        Ok(())
+    }
+}

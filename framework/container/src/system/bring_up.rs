@@ -1,0 +1,134 @@
+//! Life-cycle operations on all components of an application, one after the other.
+
+use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use system_model::fault::{Fault, FaultKind};
+use system_model::life_cycle::Operation;
+
+use crate::component::{Component, ComponentCell, OperationError};
+use crate::executor::mark_lost;
+use crate::guard::loss::LostThread;
+use crate::lane::{Lane, Work};
+
+/// While nothing else runs a component is free at once; a busy one was abandoned.
+const ENTER_LIMIT: Duration = Duration::from_millis(100);
+
+/// What is done with a component.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Step {
+    /// Make the instance.
+    Construct,
+    /// A life-cycle operation.
+    Operate(Operation),
+}
+
+/// A component that said no.
+#[derive(Debug, Clone)]
+pub struct Failure {
+    /// Instance name.
+    pub component: String,
+    /// What it said.
+    pub fault: Fault,
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            formatter,
+            "component '{}' failed in {}: {}\n  help: nothing was started; see its properties and the devices it opens",
+            self.component, self.fault.callback, self.fault.message
+        )
+    }
+}
+
+/// Failures, shared with the thread that waits.
+#[derive(Clone, Default)]
+pub(super) struct Failures(Arc<Mutex<Vec<Failure>>>);
+
+impl Failures {
+    /// All of them.
+    pub(super) fn take(&self) -> Vec<Failure> {
+        std::mem::take(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    fn push(&self, failure: Failure) {
+        self.0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(failure);
+    }
+}
+
+/// Each component in turn goes through all steps.
+pub(super) struct Agenda {
+    components: Arc<[Arc<ComponentCell>]>,
+    steps: Vec<Step>,
+    last_first: bool,
+    /// Pairs of component and step that have begun.
+    begun: usize,
+    failures: Failures,
+}
+
+impl Agenda {
+    pub(super) fn new(
+        components: Arc<[Arc<ComponentCell>]>,
+        steps: Vec<Step>,
+        last_first: bool,
+    ) -> Self {
+        Self {
+            components,
+            steps,
+            last_first,
+            begun: 0,
+            failures: Failures::default(),
+        }
+    }
+
+    pub(super) fn failures(&self) -> Failures {
+        self.failures.clone()
+    }
+
+    fn perform(&self, position: usize, lane: &Lane) {
+        let (index, step) = (position / self.steps.len(), position % self.steps.len());
+        let index = if self.last_first {
+            self.components.len() - 1 - index
+        } else {
+            index
+        };
+        let Some(mut component) = self.components[index].enter(lane.token(), ENTER_LIMIT) else {
+            return;
+        };
+        let result = match self.steps[step] {
+            Step::Construct => component.construct(lane.loss()),
+            Step::Operate(operation) => component.operate(operation, lane.loss()),
+        };
+        if let Err(OperationError::Failed(fault)) = result {
+            self.judge(&component, fault);
+        }
+    }
+
+    /// A crash is contained and the rest goes on; a refusal is for the person to deal with.
+    fn judge(&self, component: &Component, fault: Fault) {
+        if fault.kind == FaultKind::ErrorReturn {
+            self.failures.push(Failure {
+                component: component.name().to_string(),
+                fault,
+            });
+        }
+    }
+}
+
+impl Work for Agenda {
+    fn run(&mut self, lane: &Lane) {
+        while self.begun < self.components.len() * self.steps.len() {
+            self.begun += 1;
+            self.perform(self.begun - 1, lane);
+        }
+    }
+
+    fn after_loss(&mut self, lost: &LostThread) {
+        mark_lost(&self.components, lost);
+    }
+}
