@@ -6,6 +6,8 @@
 //! A reader for one more kind of file is a function over [`Document`] and [`Node`]; the example at
 //! [`Document`] shows one.
 
+#![forbid(unsafe_code)]
+
 mod check;
 mod decode;
 mod document;

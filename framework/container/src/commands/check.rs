@@ -1,7 +1,7 @@
 //! `steadfast check`: every problem of profiles, applications and what they refer to.
 
 use std::collections::HashSet;
-use std::fs::File;
+use std::fs::{DirEntry, File};
 use std::io::{self, IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -17,9 +17,6 @@ const GOOD: u8 = 0;
 const PROBLEMS: u8 = 1;
 /// A file is missing or cannot be read at all.
 const CANNOT_READ: u8 = 2;
-
-/// Folders inside each other; a deeper tree is a loop of links or a mistake.
-const MAX_FOLDER_DEPTH: usize = 32;
 
 /// What `steadfast check` is asked to do.
 #[derive(Debug, Args)]
@@ -82,7 +79,7 @@ fn reports(arguments: &CheckArguments) -> Vec<FileReport> {
     let mut named = Vec::new();
     for path in &arguments.files {
         if path.is_dir() {
-            collect(path, 0, &mut named);
+            collect(path, &mut named);
         } else {
             named.push(path.clone());
         }
@@ -99,20 +96,19 @@ fn reports(arguments: &CheckArguments) -> Vec<FileReport> {
     reports
 }
 
-/// All XML files of a folder, sorted. A folder that cannot be listed is left to the opener of files,
-/// which says why.
-fn collect(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) {
+/// All XML files of a folder, sorted. Links to folders are not followed: they may lead in a circle.
+/// A folder that cannot be listed is left to the opener of files, which says why.
+fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     let Ok(entries) = std::fs::read_dir(folder) else {
         files.push(folder.to_owned());
         return;
     };
-    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-    paths.sort();
-    for path in paths {
-        if path.is_dir() {
-            if depth < MAX_FOLDER_DEPTH {
-                collect(&path, depth + 1, files);
-            }
+    let mut entries: Vec<DirEntry> = entries.flatten().collect();
+    entries.sort_by_key(DirEntry::path);
+    for entry in entries {
+        let path = entry.path();
+        if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+            collect(&path, files);
         } else if looks_like_xml(&path) {
             files.push(path);
         }
@@ -124,7 +120,7 @@ fn collect(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) {
 fn looks_like_xml(path: &Path) -> bool {
     const DECLARATION: &[u8] = b"<?xml";
     match path.extension() {
-        Some(ending) => ending.eq_ignore_ascii_case("xml"),
+        Some(ending) => ending.eq_ignore_ascii_case("xml") && !path.is_dir(),
         None if path.is_file() => {
             let mut head = [0; DECLARATION.len()];
             let read = File::open(path).and_then(|mut file| file.read_exact(&mut head));
