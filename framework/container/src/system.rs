@@ -84,6 +84,14 @@ pub enum StartError {
         BRING_UP_LIMIT.as_secs()
     )]
     Hangs,
+    /// The event file cannot be written.
+    #[error("{} cannot be written: {error}", .path.display())]
+    Output {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: std::io::Error,
+    },
     /// The system refused threads or files.
     #[error("the container cannot run: {0}")]
     System(#[from] std::io::Error),
@@ -121,7 +129,12 @@ impl System {
         let real = options.clock == ClockKind::Real;
         let world = simulation.map(|simulation| Arc::new(World::new(simulation, real)));
         let (events, writer) =
-            EventLog::open(options.events.as_deref(), !real, options.echo.take())?;
+            EventLog::open(options.events.as_deref(), !real, options.echo.take()).map_err(
+                |error| StartError::Output {
+                    path: options.events.clone().unwrap_or_default(),
+                    error,
+                },
+            )?;
         let environment = Arc::new(Environment {
             clock: if real {
                 Clock::real()

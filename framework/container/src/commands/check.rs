@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
-use miette::{GraphicalReportHandler, GraphicalTheme};
 use serde_json::{Value, json};
 use system_profile::{FileReport, LoadOptions, Problem, Severity, check_file};
+
+use super::problems;
 
 /// All is well.
 const GOOD: u8 = 0;
@@ -180,35 +181,10 @@ fn write_human(reports: &[FileReport]) -> io::Result<()> {
     let colours = io::stdout().is_terminal();
     let mut output = io::BufWriter::new(io::stdout().lock());
     for report in reports {
-        write_problems(&mut output, &report.problems, colours)?;
+        problems::write(&mut output, &report.problems, colours)?;
     }
     writeln!(output, "{}", summary(reports))?;
     output.flush()
-}
-
-/// Writes problems for people, each with the offending text underlined. `colours` says whether
-/// `output` is a terminal; a person who sets NO_COLOR gets none even there.
-pub fn write_problems(
-    output: &mut impl Write,
-    problems: &[Problem],
-    colours: bool,
-) -> io::Result<()> {
-    let handler = GraphicalReportHandler::new().with_context_lines(1);
-    let handler = match colours && std::env::var_os("NO_COLOR").is_none() {
-        true => handler,
-        false => handler.with_theme(GraphicalTheme::unicode_nocolor()),
-    };
-    for problem in problems {
-        let mut text = String::new();
-        if handler.render_report(&mut text, problem).is_err() {
-            text = format!("{}: {problem}", problem.severity.name());
-        }
-        if !problem.has_snippet() {
-            writeln!(output, "{}", problem.place)?;
-        }
-        writeln!(output, "{}\n", text.trim_end())?;
-    }
-    Ok(())
 }
 
 fn summary(reports: &[FileReport]) -> String {

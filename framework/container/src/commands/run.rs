@@ -1,1 +1,302 @@
 //! `steadfast run`: brings an application up, watches it, stops it in order.
+
+mod duration;
+mod live;
+mod report;
+
+use std::io::{self, IsTerminal as _, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
+use container::assembly::{AssemblyProblem, LibraryOptions};
+use container::library::LibrarySearch;
+use container::summary::Summary;
+use container::system::{ClockKind, RunOptions, StartError, System};
+use crossbeam::channel::bounded;
+use robot_simulation::Simulation;
+use system_model::specification::ApplicationSpecification;
+use system_profile::{LoadOptions, Problem, Severity, load_application, load_world};
+
+use super::problems;
+use live::Watcher;
+
+/// Exit codes of `run`, by kind; the manual of the command lists them.
+mod exit_code {
+    pub(super) const ENDED: u8 = 0;
+    pub(super) const PROFILE: u8 = 1;
+    pub(super) const FILE: u8 = 2;
+    pub(super) const LIBRARY: u8 = 3;
+    pub(super) const CONNECTION: u8 = 4;
+    pub(super) const COMPONENT: u8 = 5;
+    pub(super) const SYSTEM: u8 = 6;
+}
+
+/// How often a person's view is refreshed: fast enough to look alive, slow enough to be read.
+const REFRESH_PERIOD: Duration = Duration::from_millis(100);
+
+/// Lines that may wait for the view; a view that lags loses lines, the event file does not.
+const ECHO_QUEUE: usize = 1024;
+
+/// Folders for libraries by environment, separated by colons.
+const LIBRARY_PATH_VARIABLE: &str = "STEADFAST_LIBRARY_PATH";
+
+/// What `steadfast run` is asked to do.
+#[derive(Debug, Args)]
+#[command(after_help = "Exit codes:
+  0  the run ended: target reached, duration elapsed, or stopped by Ctrl-C
+  1  a profile or world file has problems
+  2  a file cannot be read or written
+  3  a library is missing, no component, or for another container
+  4  ports or connections do not fit the libraries
+  5  a component refused to be initialised or started, or hung in it
+  6  the system refused threads or memory")]
+pub struct RunArguments {
+    /// Application profile (`package_profile` or `application_profile`)
+    application: PathBuf,
+    /// How long to run, by the chosen clock: 500ms, 30s, 2min, 1h; without it until the target is
+    /// reached or Ctrl-C
+    #[arg(long = "for", value_name = "DURATION", value_parser = duration::parse)]
+    duration: Option<Duration>,
+    /// Real time, or simulated time as fast as it goes
+    #[arg(long, value_enum, default_value_t = ClockArgument::Real)]
+    clock: ClockArgument,
+    /// Seed of the simulated world
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Write every event as one JSON object a line
+    #[arg(long, value_name = "FILE.jsonl")]
+    events: Option<PathBuf>,
+    /// Write what the run came to as JSON
+    #[arg(long, value_name = "FILE.json")]
+    summary: Option<PathBuf>,
+    /// Draw the drive as seen from above
+    #[arg(long, value_name = "FILE.svg")]
+    picture: Option<PathBuf>,
+    /// Also look for component libraries in this folder; may be given several times
+    #[arg(long = "library-path", value_name = "FOLDER")]
+    library_path: Vec<PathBuf>,
+    /// Also look for referenced profiles in this folder; may be given several times
+    #[arg(long = "search-path", value_name = "FOLDER")]
+    search_path: Vec<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ClockArgument {
+    /// By the machine's clock
+    Real,
+    /// As fast as it goes; the same seed gives the same events
+    Simulated,
+}
+
+/// Why there is nothing (more) to run: exit code and text.
+struct Failed {
+    code: u8,
+    text: String,
+}
+
+/// Runs an application to its end.
+pub fn run(arguments: &RunArguments) -> ExitCode {
+    match run_to_end(arguments) {
+        Ok(()) => ExitCode::from(exit_code::ENDED),
+        Err(failed) => {
+            // If nobody reads the text the exit code still tells.
+            let _unread = writeln!(io::stderr(), "{}", failed.text.trim_end());
+            ExitCode::from(failed.code)
+        }
+    }
+}
+
+fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
+    let specification = load(arguments)?;
+    let simulation = simulate(&specification, arguments.seed)?;
+    let stop_asked = watch_signals()?;
+    let (echo, lines) = bounded(ECHO_QUEUE);
+    let options = RunOptions {
+        clock: match arguments.clock {
+            ClockArgument::Real => ClockKind::Real,
+            ClockArgument::Simulated => ClockKind::Simulated,
+        },
+        duration: arguments.duration,
+        seed: arguments.seed,
+        events: arguments.events.clone(),
+        echo: Some(echo),
+        libraries: libraries(arguments),
+    };
+    let started = System::start(&specification, simulation, options);
+    let system = started.map_err(|error| refused(&error))?;
+    let mut watcher = Watcher::new(&specification.name, lines);
+    let reason = loop {
+        if stop_asked.load(Ordering::Acquire) {
+            break "stopped";
+        }
+        if let Some(reason) = system.wait(REFRESH_PERIOD) {
+            break reason;
+        }
+        watcher.refresh(&system);
+    };
+    let world = system.world().cloned();
+    let (summary, log_error) = system.stop(reason);
+    watcher.finish();
+    if let Some(error) = log_error {
+        return Err(unwritable(arguments.events.as_deref(), &error));
+    }
+    if let (Some(path), Some(world)) = (&arguments.picture, world) {
+        write(path, world.picture().as_bytes())?;
+    }
+    conclude(arguments, &summary)
+}
+
+fn conclude(arguments: &RunArguments, summary: &Summary) -> Result<(), Failed> {
+    if let Some(path) = &arguments.summary {
+        let mut text = serde_json::to_vec_pretty(summary)
+            .map_err(|error| unwritable(Some(path), &error.into()))?;
+        text.push(b'\n');
+        write(path, &text)?;
+    }
+    let picture = arguments.picture.as_deref();
+    // A closed pipe: whoever reads has seen enough.
+    let _unread = report::print(&mut io::stdout().lock(), summary, picture);
+    Ok(())
+}
+
+fn load(arguments: &RunArguments) -> Result<ApplicationSpecification, Failed> {
+    let options = LoadOptions {
+        search_paths: arguments.search_path.clone(),
+        dangling: Severity::Error,
+    };
+    if let Err(error) = std::fs::File::open(&arguments.application) {
+        return Err(Failed {
+            code: exit_code::FILE,
+            text: format!(
+                "{} cannot be read: {error}",
+                arguments.application.display()
+            ),
+        });
+    }
+    let outcome = load_application(&arguments.application, &options);
+    match outcome.specification {
+        Some(specification) => {
+            show(&outcome.problems);
+            Ok(specification)
+        }
+        None => Err(Failed {
+            code: exit_code::PROFILE,
+            text: format!(
+                "{}\n{} was not started",
+                problems::render(&outcome.problems, errors_on_terminal()),
+                arguments.application.display()
+            ),
+        }),
+    }
+}
+
+/// Warnings do not stop a run, but a person should see them.
+fn show(found: &[Problem]) {
+    if !found.is_empty() {
+        let _unread = writeln!(
+            io::stderr(),
+            "{}",
+            problems::render(found, errors_on_terminal())
+        );
+    }
+}
+
+fn simulate(
+    specification: &ApplicationSpecification,
+    seed: u64,
+) -> Result<Option<Simulation>, Failed> {
+    let Some(path) = &specification.world else {
+        return Ok(None);
+    };
+    let outcome = load_world(path);
+    let Some(world) = outcome.world else {
+        return Err(Failed {
+            code: exit_code::PROFILE,
+            text: problems::render(&outcome.problems, errors_on_terminal()),
+        });
+    };
+    show(&outcome.problems);
+    let simulation = Simulation::new(&world, seed).map_err(|error| Failed {
+        code: exit_code::PROFILE,
+        text: format!("{}: {error}", path.display()),
+    })?;
+    Ok(Some(simulation))
+}
+
+/// The first signal asks for a stop in order, the second ends the process at once.
+fn watch_signals() -> Result<Arc<AtomicBool>, Failed> {
+    let asked = Arc::new(AtomicBool::new(false));
+    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+        signal_hook::flag::register_conditional_shutdown(signal, 130, Arc::clone(&asked))
+            .and_then(|_id| signal_hook::flag::register(signal, Arc::clone(&asked)))
+            .map_err(|error| Failed {
+                code: exit_code::SYSTEM,
+                text: format!("signals cannot be watched: {error}"),
+            })?;
+    }
+    Ok(asked)
+}
+
+/// Libraries: the folders given, those of the environment, then the folder of this executable.
+fn libraries(arguments: &RunArguments) -> LibraryOptions {
+    let executable = std::env::current_exe().ok();
+    let mut folders = arguments.library_path.clone();
+    if let Some(variable) = std::env::var_os(LIBRARY_PATH_VARIABLE) {
+        folders.extend(std::env::split_paths(&variable));
+    }
+    folders.extend(
+        executable
+            .as_deref()
+            .and_then(Path::parent)
+            .map(PathBuf::from),
+    );
+    LibraryOptions {
+        search: LibrarySearch::new(folders),
+        probe: executable,
+    }
+}
+
+fn refused(error: &StartError) -> Failed {
+    let code = match error {
+        StartError::Assembly(problems) => match problems.first() {
+            Some(AssemblyProblem::Connection { .. }) => exit_code::CONNECTION,
+            Some(AssemblyProblem::Resources { .. }) => exit_code::SYSTEM,
+            Some(AssemblyProblem::Library { .. }) | None => exit_code::LIBRARY,
+        },
+        StartError::Components(_) | StartError::Hangs => exit_code::COMPONENT,
+        StartError::Output { .. } => exit_code::FILE,
+        StartError::System(_) => exit_code::SYSTEM,
+    };
+    Failed {
+        code,
+        text: error.to_string(),
+    }
+}
+
+fn write(path: &Path, content: &[u8]) -> Result<(), Failed> {
+    std::fs::write(path, content).map_err(|error| unwritable(Some(path), &error))
+}
+
+fn unwritable(path: Option<&Path>, error: &io::Error) -> Failed {
+    let name = path.map_or_else(
+        || "the output".to_owned(),
+        |path| path.display().to_string(),
+    );
+    Failed {
+        code: exit_code::FILE,
+        text: format!("{name} cannot be written: {error}"),
+    }
+}
+
+/// Whether a person watches.
+fn on_terminal() -> bool {
+    io::stdout().is_terminal()
+}
+
+fn errors_on_terminal() -> bool {
+    io::stderr().is_terminal()
+}

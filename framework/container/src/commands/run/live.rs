@@ -1,0 +1,181 @@
+//! The view of a running application: a table that is redrawn on a terminal, plain lines else.
+
+use std::io::{self, Write as _};
+use std::time::Instant;
+
+use container::event_log::Event;
+use container::status::ComponentStatus;
+use container::system::System;
+use crossbeam::channel::Receiver;
+use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
+
+use super::on_terminal;
+
+/// Shows what happens.
+pub(super) struct Watcher {
+    lines: Receiver<(u64, Event)>,
+    table: Option<Table>,
+}
+
+/// One line for the robot, one for each component.
+struct Table {
+    lines: MultiProgress,
+    robot: ProgressBar,
+    components: Vec<ProgressBar>,
+    application: String,
+    last: Option<(Instant, Vec<u64>)>,
+}
+
+impl Watcher {
+    pub(super) fn new(application: &str, lines: Receiver<(u64, Event)>) -> Self {
+        let table = on_terminal().then(|| Table::new(application));
+        Self { lines, table }
+    }
+
+    /// Shows what has happened since the last time.
+    pub(super) fn refresh(&mut self, system: &System) {
+        self.print_events();
+        if let Some(table) = &mut self.table {
+            table.refresh(system);
+        }
+    }
+
+    /// Shows the rest and takes the table away.
+    pub(super) fn finish(&mut self) {
+        self.print_events();
+        if let Some(table) = &self.table {
+            // Without a terminal there is nothing to clear.
+            let _no_terminal = table.lines.clear();
+        }
+    }
+
+    fn print_events(&self) {
+        while let Ok((t_ns, event)) = self.lines.try_recv() {
+            let Some(text) = describe(&event) else {
+                continue;
+            };
+            let seconds = std::time::Duration::from_nanos(t_ns).as_secs_f64();
+            let line = format!("[{seconds:10.3}] {text}");
+            match &self.table {
+                // A view that cannot be drawn is no reason to stop the robot.
+                Some(table) => drop(table.lines.println(line)),
+                None => drop(writeln!(io::stdout(), "{line}")),
+            }
+        }
+    }
+}
+
+/// The event in words; `None` for those that would only be noise.
+fn describe(event: &Event) -> Option<String> {
+    Some(match event {
+        Event::RunStarted {
+            application,
+            clock,
+            seed,
+            components,
+        } => format!("{application}: {components} components, {clock} time, seed {seed}"),
+        Event::State {
+            component,
+            from,
+            to,
+            ..
+        } => format!("{component}: {from} -> {to}"),
+        Event::Fault {
+            component,
+            kind,
+            callback,
+            message,
+            place,
+            ..
+        } => {
+            let place = place.as_ref().map(|at| format!(" at {at}"));
+            format!(
+                "FAULT {component}: {kind} in {callback}: {message}{}",
+                place.unwrap_or_default()
+            )
+        }
+        Event::Overrun {
+            executor, late_ns, ..
+        } => {
+            let late = std::time::Duration::from_nanos(*late_ns);
+            format!("{executor}: overrun, {late:.1?} late")
+        }
+        Event::Log {
+            component,
+            level,
+            message,
+        } if *level != "debug" => format!("{component}: {level}: {message}"),
+        Event::Log { .. } | Event::RunStopped { .. } => return None,
+        Event::Notice { message } => format!("notice: {message}"),
+        Event::TargetReached { time_s } => {
+            format!("the robot has reached its target ({time_s:.2} s)")
+        }
+    })
+}
+
+impl Table {
+    fn new(application: &str) -> Self {
+        let lines = MultiProgress::new();
+        let robot = lines.add(line());
+        Self {
+            lines,
+            robot,
+            components: Vec::new(),
+            application: application.to_owned(),
+            last: None,
+        }
+    }
+
+    fn refresh(&mut self, system: &System) {
+        let time_s = system.now().as_secs_f64();
+        let robot = system.world().map(|world| world.summary());
+        self.robot.set_message(match robot {
+            Some(robot) => format!(
+                "{} {time_s:8.2} s   target {:5.2} m away   path {:5.2} m   collisions {}   clearance {:4.2} m",
+                self.application,
+                robot.distance_to_target_m,
+                robot.path_length_m,
+                robot.collisions,
+                robot.least_clearance_m
+            ),
+            None => format!("{} {time_s:8.2} s", self.application),
+        });
+        let statuses = system.statuses();
+        while self.components.len() < statuses.len() {
+            self.components.push(self.lines.add(line()));
+        }
+        let now = Instant::now();
+        let cycles: Vec<u64> = statuses.iter().map(|status| status.cycles()).collect();
+        for (index, (status, bar)) in statuses.iter().zip(&self.components).enumerate() {
+            let rate_hz = self.last.as_ref().map(|(then, before)| {
+                let passed_s = now.duration_since(*then).as_secs_f64();
+                (cycles[index] - before[index]) as f64 / passed_s.max(1e-9)
+            });
+            bar.set_message(component_line(status, rate_hz));
+        }
+        self.last = Some((now, cycles));
+    }
+}
+
+fn component_line(status: &ComponentStatus, rate_hz: Option<f64>) -> String {
+    let rate = rate_hz.map_or_else(String::new, |rate_hz| format!("{rate_hz:8.1} Hz"));
+    let fault = status.last_fault().unwrap_or_default();
+    format!(
+        "  {:22} {:9} {:>9} cycles {rate:11} {:>4} overruns {:>4} faults  {fault}",
+        status.name,
+        status.state().name(),
+        status.cycles(),
+        status.overruns(),
+        status.faults()
+    )
+}
+
+/// A line of text that is redrawn in place.
+fn line() -> ProgressBar {
+    let style = ProgressStyle::with_template("{wide_msg}");
+    let bar = ProgressBar::new_spinner();
+    match style {
+        Ok(style) => bar.with_style(style),
+        Err(_constant_template) => bar,
+    }
+}

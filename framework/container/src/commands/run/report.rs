@@ -1,0 +1,75 @@
+//! What a run came to, for a person.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use container::summary::Summary;
+
+/// Prints the summary.
+pub(super) fn print(
+    output: &mut impl Write,
+    summary: &Summary,
+    picture: Option<&Path>,
+) -> io::Result<()> {
+    for (name, application) in &summary.applications {
+        writeln!(
+            output,
+            "\n{name}: {} after {:.2} s of {} time ({})",
+            application.state,
+            application.time_s,
+            application.clock,
+            application.ended_by.replace('_', " ")
+        )?;
+    }
+    if let Some(robot) = &summary.robot {
+        match robot.time_s {
+            Some(time_s) => writeln!(output, "  robot: reached its target after {time_s:.2} s")?,
+            None => writeln!(
+                output,
+                "  robot: has not reached its target, {:.2} m to go",
+                robot.distance_to_target_m
+            )?,
+        }
+        writeln!(
+            output,
+            "  path {:.2} m, collisions {}, least clearance {:.2} m",
+            robot.path_length_m, robot.collisions, robot.least_clearance_m
+        )?;
+    }
+    components(output, summary)?;
+    if let Some(picture) = picture {
+        writeln!(output, "  picture of the drive: {}", picture.display())?;
+    }
+    output.flush()
+}
+
+fn components(output: &mut impl Write, summary: &Summary) -> io::Result<()> {
+    let width = summary
+        .components
+        .keys()
+        .map(|name| name.chars().count())
+        .max()
+        .unwrap_or_default()
+        .max("component".len());
+    writeln!(
+        output,
+        "  {:width$}  {:9} {:>11} {:>9} {:>8} {:>6}  tier",
+        "component", "state", "incarnation", "cycles", "overruns", "faults"
+    )?;
+    for (name, component) in &summary.components {
+        writeln!(
+            output,
+            "  {name:width$}  {:9} {:>11} {:>9} {:>8} {:>6}  {}",
+            component.state,
+            component.incarnation,
+            component.cycles,
+            component.overruns,
+            component.faults,
+            component.tier
+        )?;
+        if let Some(fault) = &component.last_fault {
+            writeln!(output, "  {:width$}  last fault: {fault}", "")?;
+        }
+    }
+    Ok(())
+}
