@@ -28,7 +28,7 @@ pub use check::{FileReport, check_file};
 pub use document::{Document, MAX_FILE_SIZE};
 pub use node::Node;
 pub use problem::{MAX_PROBLEMS_PER_FILE, Problem, ProblemLog, Severity};
-pub use readers::{PROFILE_ROOTS, read_profile};
+pub use readers::{PROFILE_ROOTS, WorldOutcome, load_world, read_profile};
 pub use reading::reading;
 pub use resolve::{LoadOptions, LoadOutcome, load_application};
 pub use source::Source;

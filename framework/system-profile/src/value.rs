@@ -70,6 +70,11 @@ impl<'a> Value<'a> {
         self.text
     }
 
+    /// What holds the text, as it is called in messages.
+    pub(crate) fn owner(&self) -> &str {
+        &self.owner
+    }
+
     /// Whether there is no text.
     pub fn is_empty(&self) -> bool {
         self.text.is_empty()

@@ -9,13 +9,16 @@ mod ports;
 mod project;
 mod service_type;
 mod system;
+mod world;
 
 use system_model::profile::Profile;
 
 use crate::document::Document;
 
+pub use world::{WorldOutcome, load_world};
+
 /// The roots that [`read_profile`] understands.
-pub const PROFILE_ROOTS: [&str; 9] = [
+pub const PROFILE_ROOTS: [&str; 10] = [
     "component_profile",
     "package_profile",
     "application_profile",
@@ -25,6 +28,7 @@ pub const PROFILE_ROOTS: [&str; 9] = [
     "system_config",
     "system_profile",
     "OPRoSProject",
+    world::WORLD_ROOT,
 ];
 
 /// Elements of the fault-tolerance dialect. They may stand inline in profiles, and are read
@@ -57,9 +61,15 @@ pub(crate) const FAULT_TOLERANCE: [&str; 24] = [
 ];
 
 /// Makes a document typed. A profile with errors is still returned, as far as it could be
-/// understood; ask [`Document::has_errors`] before it is used.
+/// understood; ask [`Document::has_errors`] before it is used. A world is looked through for its
+/// problems, but it is no profile; [`load_world`] returns it.
 pub fn read_profile(document: &Document) -> Option<Profile> {
     let root = document.root(&PROFILE_ROOTS)?;
+    if root.name() == world::WORLD_ROOT {
+        let _looked_through = world::read(&root);
+        root.finish();
+        return None;
+    }
     let profile = match root.name() {
         "component_profile" => Profile::Component(Box::new(component::read(&root))),
         "composite_component_profile" => Profile::Composite(application::read_composite(&root)),

@@ -58,7 +58,8 @@ pub fn load_application(path: &Path, options: &LoadOptions) -> LoadOutcome {
     let file = assembly.files.open(path);
     let specification = match &file.profile {
         Some(Profile::Application(profile)) => assembly.application(&file, profile),
-        Some(_) => {
+        // A world is no profile, and a file with an unknown root has been reported.
+        _ if file.profile.is_some() || !file.document.has_errors() => {
             let root = file.document.tree().map(|root| root.name.as_str());
             let root = suggest::quoted(root.unwrap_or_default());
             file.document.report_root(
@@ -67,7 +68,7 @@ pub fn load_application(path: &Path, options: &LoadOptions) -> LoadOutcome {
             );
             None
         }
-        None => None,
+        _ => None,
     };
     LoadOutcome {
         specification: specification.filter(|_| assembly.is_sound()),
