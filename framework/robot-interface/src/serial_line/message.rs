@@ -37,7 +37,8 @@ impl MotionType {
         Self::TurnRight,
     ];
 
-    fn from_code(code: u8) -> Option<Self> {
+    /// The motion type of this number, if there is one.
+    pub fn from_code(code: u8) -> Option<Self> {
         Self::ALL.get(usize::from(code)).copied()
     }
 }
