@@ -102,19 +102,41 @@ pub enum Ending {
     Gone,
 }
 
-/// What goes into the coroutine.
+/// What goes into the coroutine: in one register, because a larger value would be written and
+/// read again through memory on every call. Arguments wait in the host side.
+#[derive(Clone, Copy, PartialEq, Eq)]
+#[repr(usize)]
 enum Input {
-    Callback(Callback),
-    Reply(u64),
+    /// Run the callback that the host side names.
+    Callback,
+    /// Run `onExecute`, `onUpdated`: the two calls of every cycle.
+    Execute,
+    Updated,
+    /// The answer to what was asked is in the host side.
+    Reply,
     End,
 }
 
-/// What comes out of it.
-enum Yielded {
-    Returned(Status),
-    Asked(Request),
-    Left(Exit),
+/// What comes out of it, likewise.
+#[derive(Clone, Copy)]
+#[repr(C)]
+struct Yielded {
+    what: What,
+    status: Status,
 }
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+enum What {
+    /// The callback returned the status.
+    Returned,
+    /// The host side has a request.
+    Asked,
+    /// The component left; the host side knows how.
+    Left,
+}
+
+const _: () = assert!(size_of::<Yielded>() <= size_of::<usize>());
 
 type ComponentCoroutine = Coroutine<Input, Yielded, Ended, ComponentStack>;
 
@@ -188,6 +210,7 @@ impl Guarded {
 
     /// Runs a callback to its end; host services that it asks for are answered by `services`.
     /// `loss` is where this thread leaves word if it is lost inside.
+    #[inline]
     pub fn call<Services: HostServices>(
         &mut self,
         callback: Callback,
@@ -200,16 +223,24 @@ impl Guarded {
         self.frame.loss = loss;
         self.frame.outer = trap::current();
         trap::set_current(&raw const *self.frame);
-        let mut input = Input::Callback(callback);
+        let mut input = match callback {
+            Callback::Execute => Input::Execute,
+            Callback::Updated => Input::Updated,
+            other => {
+                self.side.set_callback(other);
+                Input::Callback
+            }
+        };
         let ending = loop {
             match coroutine.resume(input) {
-                CoroutineResult::Yield(Yielded::Returned(status)) => {
-                    break Ending::Returned(status);
-                }
-                CoroutineResult::Yield(Yielded::Asked(request)) => {
-                    input = Input::Reply(services.answer(request));
-                }
-                CoroutineResult::Yield(Yielded::Left(exit)) => break Ending::Left(exit),
+                CoroutineResult::Yield(yielded) => match yielded.what {
+                    What::Returned => break Ending::Returned(yielded.status),
+                    What::Asked => {
+                        self.side.set_reply(services.answer(self.side.request()));
+                        input = Input::Reply;
+                    }
+                    What::Left => break Ending::Left(self.side.exit()),
+                },
                 CoroutineResult::Return(Ended::Trapped(trap)) => break Ending::Trapped(trap),
                 CoroutineResult::Return(Ended::Asked) => break Ending::Gone,
             }
@@ -261,18 +292,22 @@ fn serve(
     side.set_yielder(yielder);
     let mut input = first;
     loop {
-        match input {
-            Input::Callback(callback) => {
-                let status = invoke(side, callbacks, callback);
-                input = yielder.suspend(Yielded::Returned(status));
-            }
+        let status = match input {
+            Input::Execute => plain(callbacks.on_execute, side.instance()),
+            Input::Updated => plain(callbacks.on_updated, side.instance()),
+            Input::Callback => invoke(side, callbacks, side.callback()),
             // A reply without a question does not happen; ending is the safe answer.
-            Input::Reply(_) | Input::End => return Ended::Asked,
-        }
+            Input::Reply | Input::End => return Ended::Asked,
+        };
+        input = yielder.suspend(Yielded {
+            what: What::Returned,
+            status,
+        });
     }
 }
 
-/// Calls the component.
+/// Calls the component, for all callbacks.
+#[cold]
 fn invoke(side: &HostSide, callbacks: &Callbacks, callback: Callback) -> Status {
     let instance = side.instance();
     match callback {
@@ -316,8 +351,10 @@ fn invoke(side: &HostSide, callbacks: &Callbacks, callback: Callback) -> Status 
     }
 }
 
+#[inline]
 fn plain(function: Option<component_abi::callback::Callback>, instance: *mut Instance) -> Status {
     match function {
+        _ if instance.is_null() => Status::PRECONDITION_NOT_MET,
         // SAFETY: the instance was made by this library's `create` and is alive.
         Some(function) => unsafe { function(instance) },
         None => Status::SUCCESS,

@@ -447,12 +447,12 @@ impl Services {
 
 impl HostServices for Services {
     #[inline]
-    fn answer(&mut self, request: Request) -> u64 {
+    fn answer(&mut self, request: &Request) -> u64 {
         let status = match request {
-            Request::Read(port, data) => self.read(port, data),
-            Request::Write(port, data) => self.write(port, data),
+            Request::Read(port, data) => self.read(*port, *data),
+            Request::Write(port, data) => self.write(*port, *data),
             Request::Now => return self.environment.clock.now_ns(),
-            other => self.answer_rarely(other),
+            other => self.answer_rarely(*other),
         };
         u64::from(status.0)
     }
@@ -460,6 +460,7 @@ impl HostServices for Services {
 
 impl Services {
     /// Everything that is not asked every cycle.
+    #[cold]
     fn answer_rarely(&mut self, request: Request) -> Status {
         let result = match request {
             Request::Raise(port, data) => Ok(self.raise(port, data)),

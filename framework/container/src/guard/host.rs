@@ -1,7 +1,7 @@
 //! The component's way into the container: the host table. Each function suspends the coroutine
 //! with a request; the executor's side answers it on its own stack.
 
-use std::cell::Cell;
+use std::cell::{Cell, UnsafeCell};
 use std::ptr;
 
 use component_abi::{Header, HostContext, HostTable, Instance, Status, Text};
@@ -10,7 +10,7 @@ use corosensei::stack::Stack as _;
 
 use super::copy::guarded_copy;
 use super::stack::ComponentStack;
-use super::{Exit, Input, Yielded};
+use super::{Callback, Exit, Input, What, Yielded};
 
 /// What a component asks. Pointers are as the component gave them: anything.
 #[derive(Debug, Clone, Copy)]
@@ -41,8 +41,9 @@ pub enum Request {
 
 /// Answers what components ask; the answer is a status code, or the time for [`Request::Now`].
 pub trait HostServices {
-    /// Answers one request. Runs on the container's stack.
-    fn answer(&mut self, request: Request) -> u64;
+    /// Answers one request. Runs on the container's stack. (By reference: the fields were just
+    /// written one by one, and a copy would wait for all of them.)
+    fn answer(&mut self, request: &Request) -> u64;
 }
 
 /// Bytes that a component names for reading; perhaps not readable at all.
@@ -122,6 +123,12 @@ impl ForeignText {
 pub(super) struct HostSide {
     yielder: Cell<*const Yielder<Input, Yielded>>,
     instance: Cell<*mut Instance>,
+    callback: Cell<Callback>,
+    /// Written by the component's side before it suspends, read by the container's side before it
+    /// resumes: never both at once.
+    request: UnsafeCell<Request>,
+    reply: Cell<u64>,
+    exit: Cell<Exit>,
     base: usize,
     limit: usize,
 }
@@ -129,10 +136,9 @@ pub(super) struct HostSide {
 impl HostSide {
     pub(super) fn new(stack: &ComponentStack) -> Self {
         Self {
-            yielder: Cell::new(ptr::null()),
-            instance: Cell::new(ptr::null_mut()),
             base: stack.base().get(),
             limit: stack.limit().get(),
+            ..Self::empty()
         }
     }
 
@@ -141,6 +147,10 @@ impl HostSide {
         Self {
             yielder: Cell::new(ptr::null()),
             instance: Cell::new(ptr::null_mut()),
+            callback: Cell::new(Callback::Create),
+            request: UnsafeCell::new(Request::Now),
+            reply: Cell::new(0),
+            exit: Cell::new(Exit::Abort),
             base: 0,
             limit: 0,
         }
@@ -174,27 +184,57 @@ impl HostSide {
         (self.limit..self.base).contains(&address)
     }
 
+    pub(super) fn callback(&self) -> Callback {
+        self.callback.get()
+    }
+
+    pub(super) fn set_callback(&self, callback: Callback) {
+        self.callback.set(callback);
+    }
+
+    pub(super) fn request(&self) -> &Request {
+        // SAFETY: the component is suspended while the container looks at what it asks.
+        unsafe { &*self.request.get() }
+    }
+
+    pub(super) fn set_reply(&self, reply: u64) {
+        self.reply.set(reply);
+    }
+
+    pub(super) fn exit(&self) -> Exit {
+        self.exit.get()
+    }
+
+    #[inline]
     fn ask(&self, request: Request) -> u64 {
         if !self.called_on_own_stack() {
             return u64::from(Status::UNAUTHORIZED.0);
         }
-        // SAFETY: set at the start of the coroutine, lives at the base of the stack we are on.
-        let yielder = unsafe { &*self.yielder.get() };
-        match yielder.suspend(Yielded::Asked(request)) {
-            Input::Reply(reply) => reply,
-            Input::Callback(_) | Input::End => u64::from(Status::UNAUTHORIZED.0),
-        }
+        // SAFETY: the container looks at it only while this coroutine is suspended.
+        unsafe { *self.request.get() = request };
+        self.suspend(What::Asked);
+        self.reply.get()
     }
 
     /// Leaves the component for good, if called on its stack: it is never resumed.
     pub(super) fn leave(&self, exit: Exit) {
         if self.called_on_own_stack() {
-            // SAFETY: as in `ask`.
-            let yielder = unsafe { &*self.yielder.get() };
+            self.exit.set(exit);
             loop {
-                let _never = yielder.suspend(Yielded::Left(exit));
+                self.suspend(What::Left);
             }
         }
+    }
+
+    #[inline]
+    fn suspend(&self, what: What) {
+        // SAFETY: set at the start of the coroutine, lives at the base of the stack we are on.
+        let yielder = unsafe { &*self.yielder.get() };
+        // What comes back is always a reply; a component that left is never resumed.
+        let _reply = yielder.suspend(Yielded {
+            what,
+            status: Status::SUCCESS,
+        });
     }
 }
 

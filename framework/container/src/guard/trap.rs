@@ -84,6 +84,7 @@ thread_local! {
 }
 
 /// The frame of the component that this thread is inside of; null outside.
+#[inline]
 pub(super) fn current() -> *const Frame {
     CURRENT.get()
 }
@@ -101,6 +102,7 @@ pub(super) fn depth() -> usize {
 }
 
 /// Enters or leaves a component.
+#[inline]
 pub(super) fn set_current(frame: *const Frame) {
     CURRENT.set(frame);
 }

@@ -1,0 +1,25 @@
+//! What the container costs on the path that runs every cycle, beside a floor measured in the same
+//! run: guard, ports, executor cycle. Ends with a table of ratios.
+#![allow(missing_docs, unsafe_code)] // benchmark: calls the raw tables to have a floor
+
+mod chain;
+mod guard;
+mod ports;
+mod ratios;
+
+use std::time::Duration;
+
+use criterion::Criterion;
+
+fn main() {
+    let mut criterion = Criterion::default()
+        .configure_from_args()
+        .sample_size(50)
+        .warm_up_time(Duration::from_millis(200))
+        .measurement_time(Duration::from_millis(800));
+    guard::bench(&mut criterion);
+    ports::bench(&mut criterion);
+    chain::bench(&mut criterion);
+    criterion.final_summary();
+    ratios::print();
+}

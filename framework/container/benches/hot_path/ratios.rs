@@ -1,0 +1,116 @@
+//! The ratios that matter, from the measurements of this run.
+
+use std::path::{Path, PathBuf};
+
+/// Median and 99th percentile of one benchmark, in nanoseconds.
+struct Figure {
+    median_ns: f64,
+    p99_ns: f64,
+}
+
+/// Prints the table.
+pub fn print() {
+    let Some(root) = results() else {
+        println!("no measurements to compare");
+        return;
+    };
+    println!("\nRatios of this run (medians; p99 over criterion's samples)");
+    difference(
+        &root,
+        "guard: guarded call over plain call",
+        "guard/guarded_call",
+        "guard/plain_call",
+    );
+    for policy in ["last", "fifo"] {
+        for size in [64, 4096] {
+            for threads in ["same_thread", "across_threads"] {
+                let name = |queue: &str| format!("ports/{policy}_{queue}_{size}_{threads}");
+                let what = format!("{policy} {size} B {}", threads.replace('_', " "));
+                ratio(
+                    &root,
+                    &format!("{what}: port / bare queue"),
+                    &name("port"),
+                    &name("bare"),
+                );
+                ratio(
+                    &root,
+                    &format!("{what}: port / crossbeam"),
+                    &name("port"),
+                    &name("crossbeam"),
+                );
+            }
+        }
+    }
+    for length in [2u32, 10] {
+        if let Some(cycle) = figure(&root, &format!("cycle/chain_of_{length}")) {
+            println!(
+                "  {:52} {:8.1} ns a component (p99 {:.1})",
+                format!("chain of {length}: executor cycle"),
+                cycle.median_ns / f64::from(length),
+                cycle.p99_ns / f64::from(length)
+            );
+        }
+    }
+}
+
+fn ratio(root: &Path, what: &str, one: &str, other: &str) {
+    if let (Some(one), Some(other)) = (figure(root, one), figure(root, other)) {
+        println!(
+            "  {what:52} {:8.2}     ({:.1} ns p99 {:.1} / {:.1} ns p99 {:.1})",
+            one.median_ns / other.median_ns,
+            one.median_ns,
+            one.p99_ns,
+            other.median_ns,
+            other.p99_ns
+        );
+    }
+}
+
+fn difference(root: &Path, what: &str, one: &str, other: &str) {
+    if let (Some(one), Some(other)) = (figure(root, one), figure(root, other)) {
+        println!(
+            "  {what:52} {:+8.1} ns  ({:.1} ns p99 {:.1} / {:.1} ns p99 {:.1})",
+            one.median_ns - other.median_ns,
+            one.median_ns,
+            one.p99_ns,
+            other.median_ns,
+            other.p99_ns
+        );
+    }
+}
+
+/// The samples of a benchmark: total times over numbers of iterations.
+fn figure(root: &Path, name: &str) -> Option<Figure> {
+    let text = std::fs::read(root.join(name).join("new/sample.json")).ok()?;
+    let sample: serde_json::Value = serde_json::from_slice(&text).ok()?;
+    let numbers = |key: &str| -> Option<Vec<f64>> {
+        sample
+            .get(key)?
+            .as_array()?
+            .iter()
+            .map(serde_json::Value::as_f64)
+            .collect()
+    };
+    let (times, iterations) = (numbers("times")?, numbers("iters")?);
+    let mut each: Vec<f64> = times
+        .iter()
+        .zip(&iterations)
+        .map(|(time, count)| time / count)
+        .collect();
+    each.sort_by(f64::total_cmp);
+    let at = |share: f64| {
+        each.get(((each.len() - 1) as f64 * share) as usize)
+            .copied()
+    };
+    Some(Figure {
+        median_ns: at(0.5)?,
+        p99_ns: at(0.99)?,
+    })
+}
+
+/// Where criterion keeps its results: beside the profile folder of this executable.
+fn results() -> Option<PathBuf> {
+    let executable = std::env::current_exe().ok()?;
+    let root = executable.ancestors().nth(3)?.join("criterion");
+    root.is_dir().then_some(root)
+}
