@@ -116,13 +116,16 @@ mod tests {
     const RED: [u8; 3] = [220, 35, 30];
     const DULL: [u8; 3] = [118, 104, 84];
 
-    /// A picture of 160 x 120 pixels with a red box of 20 rows in these columns.
-    fn picture(boxes: &[Range<usize>]) -> Box<Image> {
+    /// A picture of 160 x 120 pixels with red boxes of 20 rows, from a column to before another.
+    fn picture(boxes: &[(usize, usize)]) -> Box<Image> {
         let mut image = Box::new(Image::empty());
         (image.time, image.width, image.height) = (5, 160, 120);
         for (index, pixel) in image.pixels.chunks_exact_mut(3).enumerate() {
             let (row, column) = (index / 160, index % 160);
-            let is_red = (50..70).contains(&row) && boxes.iter().any(|c| c.contains(&column));
+            let is_red = (50..70).contains(&row)
+                && boxes
+                    .iter()
+                    .any(|(from, to)| (*from..*to).contains(&column));
             pixel.copy_from_slice(if is_red { &RED } else { &DULL });
         }
         image
@@ -137,7 +140,7 @@ mod tests {
 
     #[test]
     fn the_middle_of_the_picture_is_straight_ahead() {
-        let found = Detector::default().find(&picture(&[70..90]));
+        let found = Detector::default().find(&picture(&[(70, 90)]));
         assert_eq!((found.visible, found.pixel_count), (1, 400));
         assert!(found.bearing.abs() < 1e-12);
         // 20 of 160 columns at a focal length of 125.6: 9.1 degrees for 0.24 m.
@@ -147,22 +150,22 @@ mod tests {
 
     #[test]
     fn the_edges_are_half_the_field_of_view_away_and_left_is_positive() {
-        let left = Detector::default().find(&picture(&[0..2]));
-        let right = Detector::default().find(&picture(&[158..160]));
+        let left = Detector::default().find(&picture(&[(0, 2)]));
+        let right = Detector::default().find(&picture(&[(158, 160)]));
         assert!((left.bearing - 32.1_f64.to_radians()).abs() < 0.01);
         assert!((left.bearing + right.bearing).abs() < 1e-12);
     }
 
     #[test]
     fn the_larger_of_two_things_is_the_target() {
-        let found = Detector::default().find(&picture(&[10..14, 100..120]));
+        let found = Detector::default().find(&picture(&[(10, 14), (100, 120)]));
         assert!(found.bearing < 0.0);
         assert_eq!(found.pixel_count, 400);
     }
 
     #[test]
     fn an_image_that_claims_too_much_is_empty() {
-        let mut image = picture(&[70..90]);
+        let mut image = picture(&[(70, 90)]);
         image.height = u32::MAX;
         assert_eq!(Detector::default().find(&image).visible, 0);
     }

@@ -32,9 +32,23 @@ const OUTLINE_M: f64 = 0.126;
 /// Beside an obstacle the robot slows down to this share.
 const SIDE_SPEED_SHARE: f64 = 0.5;
 /// With a blind sensor the robot goes on slowly.
-const BLIND_SPEED_SHARE: f64 = 0.4;
+const BLIND_SPEED_SHARE: f64 = 0.3;
+/// A sensor that was not heard of for this long, fifteen reports of the board, is blind.
+const SILENCE_NS: u64 = 300_000_000;
 /// What a sensor at its farthest reads.
 const FARTHEST_M: f64 = 3.0;
+
+/// What is known of one sensor.
+#[derive(PortData, Debug, Clone, Copy, Default)]
+#[repr(C)]
+struct SensorState {
+    /// Whether it ever sent a range.
+    is_known: u32,
+    /// Whether the last range said that it does not answer.
+    is_mute: u32,
+    /// When it was heard of last.
+    heard_at: u64,
+}
 
 /// What must be remembered.
 #[derive(PortData, Debug, Clone, Copy)]
@@ -43,9 +57,7 @@ pub struct Evasion {
     map: EchoMap,
     /// 1 to the left, -1 to the right, 0 while the way ahead is free.
     side: f64,
-    /// Sensors of which a range was taken, and those of them that did not answer.
-    known_sensors: [u32; SONAR_COUNT],
-    blind_sensors: [u32; SONAR_COUNT],
+    sensors: [SensorState; SONAR_COUNT],
 }
 
 /// What the way ahead asks for.
@@ -55,30 +67,38 @@ struct Way {
     speed_share: f64,
 }
 
+impl SensorState {
+    fn is_blind(&self, time_ns: u64) -> bool {
+        self.is_mute != 0 || time_ns.saturating_sub(self.heard_at) > SILENCE_NS
+    }
+}
+
 impl Evasion {
     /// Nothing known yet.
     pub fn new() -> Self {
         Self {
             map: EchoMap::new(),
             side: 0.0,
-            known_sensors: [0; SONAR_COUNT],
-            blind_sensors: [0; SONAR_COUNT],
+            sensors: [SensorState::default(); SONAR_COUNT],
         }
     }
 
     /// Takes a range; that of a sensor which does not answer is no echo.
     pub fn take_range(&mut self, sensor: &Sensor, range: &Range, pose: &WheelOdometry) {
-        let is_blind = range.distance <= 0.0;
-        self.known_sensors[sensor.index] = 1;
-        self.blind_sensors[sensor.index] = u32::from(is_blind);
-        if !is_blind {
+        let is_mute = range.distance <= 0.0;
+        self.sensors[sensor.index] = SensorState {
+            is_known: 1,
+            is_mute: u32::from(is_mute),
+            heard_at: range.time,
+        };
+        if !is_mute {
             self.map.take_range(sensor, range.distance, pose);
         }
     }
 
     /// What the echoes mean for the way; none before every sensor was heard of.
     pub fn report(&mut self, time_ns: u64, pose: &WheelOdometry) -> Option<ObstacleReport> {
-        if self.known_sensors.contains(&0) {
+        if self.sensors.iter().any(|sensor| sensor.is_known == 0) {
             return None;
         }
         let nearest = self
@@ -87,7 +107,9 @@ impl Evasion {
             .min_by(|one, other| one.distance_m.total_cmp(&other.distance_m));
         let ahead = self.way_ahead(&PolarHistogram::new(self.map.sightings(pose)));
         let beside = self.way_beside(pose);
-        let is_blind = self.blind_sensors[..REAR.index].contains(&1);
+        let is_blind = self.sensors[..REAR.index]
+            .iter()
+            .any(|sensor| sensor.is_blind(time_ns));
         let speed_limit = if is_blind { BLIND_SPEED_SHARE } else { 1.0 };
         Some(ObstacleReport {
             time: time_ns,
@@ -240,5 +262,11 @@ mod tests {
         let report = report([0.0, 3.0, 3.0, 3.0]);
         assert_eq!(report.speed_share, BLIND_SPEED_SHARE);
         assert_eq!(report.nearest_distance, FARTHEST_M);
+    }
+
+    #[test]
+    fn a_sensor_that_fell_silent_is_blind() {
+        let report = evasion([3.0; 4]).report(SILENCE_NS + 2, &HERE);
+        assert_eq!(report.expect("known").speed_share, BLIND_SPEED_SHARE);
     }
 }

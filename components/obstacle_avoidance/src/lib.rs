@@ -14,6 +14,10 @@ use robot_interface::port_data::{ObstacleReport, Range, WheelOdometry};
 use echo_map::{FRONT, LEFT, REAR, RIGHT};
 use evasion::Evasion;
 
+/// Without odometry for this long, fifteen reports of the board, the map is worth nothing: nothing
+/// is reported, and the planner stops the robot.
+const ODOMETRY_SILENCE_NS: u64 = 300_000_000;
+
 /// Ports of both obstacle avoidances.
 #[derive(Ports)]
 pub struct ObstacleAvoidancePorts {
@@ -72,6 +76,9 @@ impl Component for ObstacleAvoidance {
             }
         }
         let time_ns = u64::try_from(context.now().as_nanos()).unwrap_or(u64::MAX);
+        if time_ns.saturating_sub(odometry.time) > ODOMETRY_SILENCE_NS {
+            return Ok(());
+        }
         if let Some(report) = evasion.report(time_ns, &odometry) {
             self.ports.obstacles.write(&report);
         }

@@ -13,6 +13,8 @@ const FRONT_GAIN_RAD_PER_S: f64 = 3.4;
 const FRONT_BRAKE: f64 = 1.6;
 /// Whatever is near halves the speed at most.
 const NEAR_BRAKE: f64 = 0.5;
+/// With a sensor that does not answer the robot goes on slowly.
+const BLIND_SPEED_SHARE: f64 = 0.3;
 /// What a sensor at its farthest reads.
 const FARTHEST_M: f64 = 3.0;
 /// From the robot's centre to the sensors in front and behind.
@@ -43,10 +45,10 @@ pub struct ClosenessSteering {
 }
 
 impl ClosenessSteering {
-    /// What the ranges mean for the way. A sensor that does not answer counts as a thing at the
-    /// very sensor: the robot does not drive where it cannot see.
+    /// What the ranges mean for the way. A sensor that does not answer has no echo.
     pub fn steer(&mut self, time_ns: u64, ranges: &Ranges) -> ObstacleReport {
-        let [front, left, right] = [ranges.front_m, ranges.left_m, ranges.right_m].map(closeness);
+        let ahead_m = [ranges.front_m, ranges.left_m, ranges.right_m];
+        let [front, left, right] = ahead_m.map(closeness);
         if front <= 0.0 {
             self.evasion_side = 0.0;
         } else if self.evasion_side == 0.0 {
@@ -54,6 +56,8 @@ impl ClosenessSteering {
         }
         let urgency = front.max(left).max(right);
         let brake = (1.0 - FRONT_BRAKE * front).max(0.0);
+        let is_blind = ahead_m.iter().any(|range_m| *range_m <= 0.0);
+        let speed_limit = if is_blind { BLIND_SPEED_SHARE } else { 1.0 };
         let (nearest_m, nearest_bearing_rad) = nearest(ranges);
         ObstacleReport {
             time: time_ns,
@@ -62,14 +66,17 @@ impl ClosenessSteering {
             evasive_turn_rate: SIDE_GAIN_RAD_PER_S * (right - left)
                 + FRONT_GAIN_RAD_PER_S * front * self.evasion_side,
             urgency,
-            speed_share: brake * (1.0 - NEAR_BRAKE * urgency),
+            speed_share: (brake * (1.0 - NEAR_BRAKE * urgency)).min(speed_limit),
         }
     }
 }
 
-/// 0 from [`NEAR_M`] on, 1 at the sensor.
+/// 0 from [`NEAR_M`] on, 1 at the sensor; 0 for a sensor that does not answer.
 fn closeness(range_m: f64) -> f64 {
-    ((NEAR_M - range_m) / NEAR_M).clamp(0.0, 1.0)
+    if range_m <= 0.0 {
+        return 0.0;
+    }
+    ((NEAR_M - range_m) / NEAR_M).max(0.0)
 }
 
 /// Distance and direction of the nearest echo.
@@ -161,22 +168,21 @@ mod tests {
     }
 
     #[test]
-    fn nothing_ahead_is_touched_nor_trusted_blindly() {
-        assert_eq!(
-            steer(Ranges {
-                front_m: 0.15,
-                ..FREE
-            })
-            .speed_share,
-            0.0
-        );
-        assert_eq!(
-            steer(Ranges {
-                front_m: 0.0,
-                ..FREE
-            })
-            .speed_share,
-            0.0
-        );
+    fn the_robot_stands_before_it_touches() {
+        let report = steer(Ranges {
+            front_m: 0.15,
+            ..FREE
+        });
+        assert_eq!(report.speed_share, 0.0);
+    }
+
+    #[test]
+    fn a_blind_sensor_slows_down_and_is_no_echo() {
+        let report = steer(Ranges {
+            left_m: 0.0,
+            ..FREE
+        });
+        assert_eq!(report.speed_share, BLIND_SPEED_SHARE);
+        assert_eq!((report.urgency, report.evasive_turn_rate), (0.0, 0.0));
     }
 }

@@ -10,6 +10,9 @@ use robot_interface::port_data::{ObstacleReport, Range, WheelOdometry};
 
 use closeness_steering::{ClosenessSteering, Ranges};
 
+/// A sensor that was not heard of for this long, fifteen reports of the board, does not answer.
+const SILENCE_NS: u64 = 300_000_000;
+
 /// Ports of both obstacle avoidances.
 #[derive(Ports)]
 pub struct ObstacleAvoidanceSimplePorts {
@@ -63,13 +66,17 @@ impl Component for ObstacleAvoidanceSimple {
         ) else {
             return Ok(());
         };
-        let ranges = Ranges {
-            front_m: front.distance,
-            left_m: left.distance,
-            right_m: right.distance,
-            rear_m: rear.distance,
-        };
         let time_ns = u64::try_from(context.now().as_nanos()).unwrap_or(u64::MAX);
+        let fresh_m = |range: Range| match time_ns.saturating_sub(range.time) {
+            0..=SILENCE_NS => range.distance,
+            _ => 0.0,
+        };
+        let ranges = Ranges {
+            front_m: fresh_m(front),
+            left_m: fresh_m(left),
+            right_m: fresh_m(right),
+            rear_m: fresh_m(rear),
+        };
         self.ports
             .obstacles
             .write(&steering.steer(time_ns, &ranges));

@@ -11,8 +11,9 @@ const ATTRACTION_MAXIMUM_RAD_PER_S: f64 = 1.4;
 const SEARCH_TURN_RATE_RAD_PER_S: f64 = 1.2;
 /// From this bearing of the target on the robot turns on the spot, unless obstacles decide.
 const ON_THE_SPOT_RAD: f64 = 1.2;
-/// Reports older than this are no ground to drive on: several cycles of whoever makes them.
-const OBSTACLES_FRESH_NS: u64 = 300_000_000;
+/// Odometry and obstacle reports older than this are no ground to drive on: several cycles of
+/// whoever makes them.
+const FRESH_NS: u64 = 300_000_000;
 /// As above, for a camera of ten pictures a second.
 const OBJECT_FRESH_NS: u64 = 1_000_000_000;
 /// From the robot's centre to its front.
@@ -93,13 +94,12 @@ impl Planner {
             time: time_ns,
             ..MotionDecision::default()
         };
-        let Some(pose) = situation.odometry else {
+        let is_fresh = |made_at: u64| time_ns.saturating_sub(made_at) < FRESH_NS;
+        let Some(pose) = situation.odometry.filter(|pose| is_fresh(pose.time)) else {
             return stand;
         };
         memory.look(situation, &pose);
-        let is_fresh =
-            |report: &ObstacleReport| time_ns.saturating_sub(report.time) < OBSTACLES_FRESH_NS;
-        let Some(obstacles) = situation.obstacles.filter(is_fresh) else {
+        let Some(obstacles) = situation.obstacles.filter(|report| is_fresh(report.time)) else {
             return stand;
         };
         if !memory.has_eyes(time_ns) {
@@ -235,7 +235,7 @@ mod tests {
                 ..whole
             },
             Situation {
-                time_ns: OBSTACLES_FRESH_NS,
+                time_ns: FRESH_NS,
                 ..whole
             },
         ] {
@@ -293,6 +293,10 @@ mod tests {
                 },
             );
             now.time_ns = time_ns;
+            now.odometry = Some(WheelOdometry {
+                time: time_ns,
+                ..WheelOdometry::default()
+            });
             let decision = planner.plan(&mut memory, &now);
             cycles_of[usize::from(decision.speed > 0.0)] += 1;
         }

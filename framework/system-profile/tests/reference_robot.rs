@@ -1,0 +1,45 @@
+//! The profiles of the reference robot are without fault, and its world is there.
+
+use std::path::{Path, PathBuf};
+
+use system_profile::{LoadOptions, load_application, load_world};
+
+fn profiles() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../profiles")
+}
+
+#[test]
+fn target_following_has_no_problem_of_any_kind() {
+    let path = profiles().join("applications/target_following.xml");
+    let outcome = load_application(&path, &LoadOptions::default());
+    assert!(outcome.problems.is_empty(), "{:#?}", outcome.problems);
+    let application = outcome.specification.expect("a sound application");
+    assert_eq!(application.components.len(), 11);
+    let world = load_world(&application.world.expect("a world"));
+    assert!(world.world.is_some() && world.problems.is_empty());
+}
+
+#[test]
+fn the_secondary_has_the_ports_of_the_primary() {
+    let ports = |name: &str| {
+        let path = profiles().join(format!("components/{name}.xml"));
+        let text = std::fs::read_to_string(path).expect("a profile");
+        let start = text.find("<ports>").expect("ports");
+        text[start..].to_owned()
+    };
+    assert_eq!(
+        ports("obstacle_avoidance"),
+        ports("obstacle_avoidance_simple")
+    );
+}
+
+#[test]
+fn a_world_is_no_application() {
+    let path = profiles().join("worlds/target_arena.xml");
+    let outcome = load_application(&path, &LoadOptions::default());
+    assert!(outcome.specification.is_none());
+    assert_eq!(
+        outcome.problems[0].message,
+        "<world_profile> is no application"
+    );
+}
