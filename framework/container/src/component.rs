@@ -36,7 +36,7 @@ pub enum OperationError {
     /// Not allowed in this state (405).
     Refused,
     /// The callback failed; the fault is on record.
-    Failed(Fault),
+    Failed(Box<Fault>),
 }
 
 impl Component {
@@ -182,10 +182,7 @@ impl Component {
         match self.run(Callback::Call(call), "onCall", loss) {
             Ok(()) => Status::SUCCESS,
             // The callee judged the request and said no: an answer, not a fault of the callee.
-            Err(Fault {
-                kind: FaultKind::ErrorReturn,
-                ..
-            }) => self.services.last_status(),
+            Err(fault) if fault.kind == FaultKind::ErrorReturn => self.services.last_status(),
             Err(_fault) => {
                 self.enter_state(LifeCycleState::Error);
                 Status::INTERNAL_FAULT
@@ -210,7 +207,7 @@ impl Component {
         callback: Callback,
         name: &'static str,
         loss: &Loss,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), Box<Fault>> {
         let result = self.run(callback, name, loss);
         if result.is_err() {
             self.fail(loss);
@@ -226,9 +223,10 @@ impl Component {
         self.enter_state(LifeCycleState::Error);
     }
 
-    /// Runs a callback and records what goes wrong.
+    /// Runs a callback and records what goes wrong. (The fault is boxed so that success travels
+    /// in a register: this runs several times a cycle.)
     #[inline]
-    fn run(&mut self, callback: Callback, name: &'static str, loss: &Loss) -> Result<(), Fault> {
+    fn run(&mut self, callback: Callback, name: &'static str, loss: &Loss) -> Result<(), Box<Fault>> {
         self.services.set_callback(name);
         let ending = self.guarded.call(callback, loss, &mut self.services);
         match ending {
@@ -240,7 +238,7 @@ impl Component {
     }
 
     #[cold]
-    fn judge(&mut self, ending: Ending, callback: &'static str) -> Fault {
+    fn judge(&mut self, ending: Ending, callback: &'static str) -> Box<Fault> {
         let fault = match ending {
             Ending::Returned(status) => self.services.returned_fault(status, callback),
             Ending::Trapped(trap) => trap_fault(&trap, callback, false),
@@ -261,7 +259,7 @@ impl Component {
         if !self.guarded.is_alive() {
             self.enter_state(LifeCycleState::Error);
         }
-        fault
+        Box::new(fault)
     }
 
     fn record(&self, fault: Fault) {

@@ -110,11 +110,11 @@ impl Agenda {
     }
 
     /// A crash is contained and the rest goes on; a refusal is for the person to deal with.
-    fn judge(&self, component: &Component, fault: Fault) {
+    fn judge(&self, component: &Component, fault: Box<Fault>) {
         if fault.kind == FaultKind::ErrorReturn {
             self.failures.push(Failure {
                 component: component.name().to_string(),
-                fault,
+                fault: *fault,
             });
         }
     }
