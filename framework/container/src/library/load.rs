@@ -35,7 +35,7 @@ impl LoadedLibrary {
     pub fn load(path: &Path) -> Result<Self, LibraryError> {
         let library = open_copy(path)?;
         // SAFETY: only the address is taken; what it points to is checked below.
-        let symbol = unsafe { library.get::<LibraryDescriptor>(ENTRY_SYMBOL.as_bytes()) };
+        let symbol = unsafe { library.get::<*const LibraryDescriptor>(ENTRY_SYMBOL.as_bytes()) };
         let Ok(symbol) = symbol else {
             return Err(LibraryError::NoComponent {
                 path: path.to_owned(),
