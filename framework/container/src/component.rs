@@ -98,6 +98,14 @@ impl Component {
             Transition::Refused => return Err(OperationError::Refused),
             Transition::Run(target) => target,
         };
+        if !self.guarded.is_alive() {
+            // Nothing of an abandoned instance is called again: it can only be given up.
+            if operation != Operation::Destroy {
+                return Err(OperationError::Refused);
+            }
+            self.enter_state(target);
+            return Ok(());
+        }
         for (callback, name) in callbacks(operation) {
             self.run(*callback, name, loss)
                 .map_err(OperationError::Failed)?;
