@@ -201,7 +201,7 @@ impl Component {
     /// The thread was lost inside this component.
     pub fn lost(&mut self, thread: &LostThread) {
         self.guarded.quarantine();
-        self.record(trap_fault(&thread.trap, "", true));
+        self.record(trap_fault(&thread.trap, self.services.callback(), true));
         self.enter_state(LifeCycleState::Error);
     }
 

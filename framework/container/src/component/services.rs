@@ -198,6 +198,11 @@ impl Services {
         self.callback = name;
     }
 
+    /// The callback that is under way, or was the last.
+    pub(super) fn callback(&self) -> &'static str {
+        self.callback
+    }
+
     pub(super) fn has_bad_pointer(&self) -> bool {
         self.bad_pointer.is_some()
     }
