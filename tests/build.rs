@@ -1,0 +1,8 @@
+//! Exports the functions that the guard interposes, so that component libraries bind to them.
+
+fn main() {
+    for symbol in ["abort", "exit", "quick_exit", "_exit"] {
+        println!("cargo::rustc-link-arg=-Wl,--export-dynamic-symbol={symbol}");
+    }
+    println!("cargo::rerun-if-changed=build.rs");
+}

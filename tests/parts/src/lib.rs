@@ -1,0 +1,27 @@
+//! What the components of the tests share: their port data, and when a faulty one strikes.
+#![forbid(unsafe_code)]
+
+mod faulty;
+
+use component_sdk::prelude::*;
+
+pub use faulty::{Faulty, FaultyPorts, Misbehaviour};
+
+/// The datum that all test components exchange.
+#[derive(PortData, Debug, Clone, Copy, PartialEq, Default)]
+#[repr(C)]
+pub struct Sample {
+    /// Counts from 1 at its source.
+    pub number: u64,
+    /// Something that a filter may change.
+    #[unit("m")]
+    pub value: f64,
+}
+
+service_type! {
+    /// A service with both kinds of method.
+    pub Arithmetic {
+        blocking double(f64) -> f64;
+        nonblocking note(u64);
+    }
+}

@@ -1,0 +1,14 @@
+//! Whole applications, run and judged from outside: the harness of the behaviour tests.
+//!
+//! Nothing here waits without a deadline, and nothing judges by how fast the machine is.
+#![forbid(unsafe_code)]
+
+mod application;
+mod build;
+mod outcome;
+mod watchdog;
+
+pub use application::{Application, Member};
+pub use build::{artifacts, c_component};
+pub use outcome::Outcome;
+pub use watchdog::{Finished, Watched, repository, until};
