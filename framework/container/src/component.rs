@@ -15,7 +15,7 @@ use crate::guard::loss::{Loss, LostThread};
 use crate::guard::{Callback, Ending, Exit, Guarded, ServiceCall, Trap};
 use crate::status::ComponentStatus;
 
-pub use cell::{ComponentCell, Entered};
+pub use cell::{ComponentCell, Entered, mark_lost};
 pub use services::{
     BoundMethod, Calls, DataOutput, Environment, EventOutput, Inbox, PortEnd, Provider, Services,
 };
@@ -234,7 +234,12 @@ impl Component {
     /// Runs a callback and records what goes wrong. (The fault is boxed so that success travels
     /// in a register: this runs several times a cycle.)
     #[inline]
-    fn run(&mut self, callback: Callback, name: &'static str, loss: &Loss) -> Result<(), Box<Fault>> {
+    fn run(
+        &mut self,
+        callback: Callback,
+        name: &'static str,
+        loss: &Loss,
+    ) -> Result<(), Box<Fault>> {
         self.services.set_callback(name);
         let ending = self.guarded.call(callback, loss, &mut self.services);
         match ending {

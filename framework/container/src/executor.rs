@@ -7,7 +7,6 @@ use std::time::Duration;
 use system_model::specification::{ExecutionKind, SchedulingPolicy};
 
 use crate::component::ComponentCell;
-use crate::guard::loss::LostThread;
 use crate::lane::Lane;
 use crate::wake::Wake;
 
@@ -139,20 +138,6 @@ impl Executor {
             && component.is_active()
         {
             component.updated(lane.loss());
-        }
-    }
-}
-
-/// Puts the components that a lost thread is inside of for ever into ERROR: those of its executor
-/// and those whose services they had called. `components` are all of the application.
-#[allow(unsafe_code)] // the hand-over after a loss
-pub fn mark_lost(components: &[Arc<ComponentCell>], lost: &LostThread) {
-    for number in &lost.components[..lost.depth] {
-        if let Some(component) = components.get(*number as usize) {
-            // SAFETY: the record of the lane's loss names this component, and the caller is the
-            // thread that took the lane over.
-            let mut component = unsafe { component.seize() };
-            component.lost(lost);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The guard: every component instance runs on a stack of its own, as a coroutine.
 //!
 //! The container resumes it with a call; a host service that the component asks for suspends back,
-//! so container code always runs on the container's stack. A trap with the stack pointer inside a
+//! so that container code runs on the container's stack (all but three, see `host`). A trap with the stack pointer inside a
 //! component's stack is that component's fault: the handler makes the coroutine return a record of
 //! it, and no frame of ours is skipped. The stack is then quarantined: never reused, never freed,
 //! like a coroutine that is never resumed.
@@ -223,6 +223,8 @@ impl Guarded {
         self.frame.loss = loss;
         self.frame.outer = trap::current();
         trap::set_current(&raw const *self.frame);
+        let services: *mut Services = services;
+        self.side.set_services(services);
         let mut input = match callback {
             Callback::Execute => Input::Execute,
             Callback::Updated => Input::Updated,
@@ -236,6 +238,8 @@ impl Guarded {
                 CoroutineResult::Yield(yielded) => match yielded.what {
                     What::Returned => break Ending::Returned(yielded.status),
                     What::Asked => {
+                        // SAFETY: the component is suspended, so nobody else uses the services.
+                        let services = unsafe { &mut *services };
                         self.side.set_reply(services.answer(self.side.request()));
                         input = Input::Reply;
                     }

@@ -6,9 +6,9 @@ use std::time::Duration;
 
 use system_model::specification::ExecutionKind;
 
-use crate::component::{ComponentCell, Environment};
+use crate::component::{ComponentCell, Environment, mark_lost};
 use crate::event_log::Event;
-use crate::executor::{Executor, mark_lost};
+use crate::executor::Executor;
 use crate::guard::loss::LostThread;
 use crate::lane::{Lane, Work};
 use crate::wake::Wake;

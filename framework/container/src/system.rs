@@ -338,13 +338,13 @@ impl System {
 
     /// Stops and destroys all, last first.
     fn shut_down(&self, limit: Duration) {
-        let steps = [
-            Step::Operate(Operation::Stop),
-            Step::Operate(Operation::Destroy),
-        ];
-        // A component that fails while it is stopped is on record; nothing else can be done.
-        if self.perform(&steps, true, limit).is_err() {
-            self.notice("stopping the components took too long: some are left behind");
+        for operation in [Operation::Stop, Operation::Destroy] {
+            // A component that fails while it is stopped is on record; nothing else can be done.
+            let result = self.perform(&[Step::Operate(operation)], true, limit);
+            if result.is_err() {
+                self.notice("stopping the components took too long: some are left behind");
+                return;
+            }
         }
     }
 

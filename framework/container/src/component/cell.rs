@@ -4,12 +4,14 @@
 
 use std::cell::UnsafeCell;
 use std::ops::{Deref, DerefMut};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 use rustix::thread::futex;
 
 use super::Component;
+use crate::guard::loss::LostThread;
 
 /// A component that several threads may want to enter.
 pub struct ComponentCell {
@@ -25,7 +27,8 @@ const WAITING: u32 = 1 << 31;
 
 // SAFETY: the component is reached only through `Entered`, of which there is one at a time: by the
 // flag if it is shared; else only the lane that runs it enters, and the lane that starts and stops
-// the application does so while no other runs. `seize` has a contract of its own.
+// the application does so while no other runs. After a loss the thread that takes over stands in
+// for the one that stopped for ever.
 unsafe impl Sync for ComponentCell {}
 
 /// Being inside a component; leaves it when dropped.
@@ -98,14 +101,18 @@ impl ComponentCell {
             }
         }
     }
+}
 
-    /// The component, although a thread is inside: that thread was lost and never runs again.
-    ///
-    /// # Safety
-    /// The thread inside must have been lost (its lane's `Loss` says so), and only the thread that
-    /// takes over its lane may call this.
-    pub unsafe fn seize(&self) -> Entered<'_> {
-        Entered { cell: self }
+/// Puts the components that a lost thread is inside of for ever into ERROR: those of its executor
+/// and those whose services they had called. `components` are all of the application; only the
+/// thread that took the lane over may call this, with the record of that lane's loss.
+pub fn mark_lost(components: &[Arc<ComponentCell>], lost: &LostThread) {
+    for number in &lost.components[..lost.depth] {
+        if let Some(cell) = components.get(*number as usize) {
+            // The thread inside never runs again, so being inside passes to this one.
+            let mut component = Entered { cell };
+            component.lost(lost);
+        }
     }
 }
 

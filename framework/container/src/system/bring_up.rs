@@ -7,8 +7,7 @@ use std::time::Duration;
 use system_model::fault::{Fault, FaultKind};
 use system_model::life_cycle::Operation;
 
-use crate::component::{Component, ComponentCell, OperationError};
-use crate::executor::mark_lost;
+use crate::component::{Component, ComponentCell, OperationError, mark_lost};
 use crate::guard::loss::LostThread;
 use crate::lane::{Lane, Work};
 
