@@ -15,7 +15,8 @@ use crate::guard::loss::{Loss, LostThread};
 use crate::guard::{Callback, Ending, Exit, Guarded, ServiceCall, Trap};
 use crate::status::ComponentStatus;
 
-pub use cell::{ComponentCell, Entered, mark_lost};
+pub(crate) use cell::mark_lost;
+pub use cell::{ComponentCell, Entered};
 pub use services::{
     BoundMethod, Calls, DataOutput, Environment, EventOutput, Inbox, PortEnd, Provider, Services,
 };
