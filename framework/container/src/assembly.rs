@@ -42,7 +42,7 @@ pub enum AssemblyProblem {
         /// Where the application names it.
         place: Place,
         /// Why.
-        error: LibraryError,
+        error: Box<LibraryError>,
     },
     /// The library's ports are not those of the profile, or a connection does not fit.
     #[error("{place}: {message}\n  help: {help}")]
@@ -138,7 +138,7 @@ fn load_all(
             Err(error) => problems.push(AssemblyProblem::Library {
                 component: component.name.clone(),
                 place: component.place.clone(),
-                error,
+                error: Box::new(error),
             }),
         }
     }

@@ -1,6 +1,7 @@
 //! A component instance in the container: life cycle, ports, and what became of it.
 
 mod cell;
+mod port_end;
 mod services;
 
 use std::sync::Arc;
@@ -17,9 +18,8 @@ use crate::status::ComponentStatus;
 
 pub(crate) use cell::mark_lost;
 pub use cell::{ComponentCell, Entered};
-pub use services::{
-    BoundMethod, Calls, DataOutput, Environment, EventOutput, Inbox, PortEnd, Provider, Services,
-};
+pub use port_end::{BoundMethod, Calls, DataOutput, EventOutput, Inbox, PortEnd, Provider};
+pub use services::{Environment, Services};
 
 /// One component instance.
 pub struct Component {

@@ -16,6 +16,7 @@ mod interpose;
 pub mod loss;
 mod registers;
 mod stack;
+mod table;
 mod trap;
 
 use std::hint::black_box;
@@ -370,7 +371,7 @@ fn create(side: &HostSide, callbacks: &Callbacks) -> Status {
         return Status::UNSUPPORTED_METHOD;
     };
     // SAFETY: the table is static; the context is this instance's host side, which outlives it.
-    let instance = unsafe { function(&raw const host::TABLE, side.context()) };
+    let instance = unsafe { function(&raw const table::TABLE, side.context()) };
     side.set_instance(instance);
     if instance.is_null() {
         Status::CALLEE_ERROR

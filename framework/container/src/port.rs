@@ -139,7 +139,13 @@ impl Receiver {
     #[inline]
     pub fn receive(&mut self) -> Option<&Datum> {
         match &mut self.buffer {
-            ReceiveBuffer::Last(output) => output.update().then(|| &*output.output_buffer()),
+            ReceiveBuffer::Last(output) => {
+                if output.update() {
+                    Some(output.output_buffer())
+                } else {
+                    None
+                }
+            }
             ReceiveBuffer::Fifo(reader) => reader.take(),
             ReceiveBuffer::Lifo {
                 arrivals,
@@ -201,7 +207,8 @@ mod tests {
 
     #[test]
     fn each_policy_keeps_what_it_should() {
-        let cases: [(QueuePolicy, usize, &[u8], &[u8], u64); 5] = [
+        type Case = (QueuePolicy, usize, &'static [u8], &'static [u8], u64);
+        let cases: [Case; 5] = [
             (QueuePolicy::Last, 1, &[1, 2, 3], &[3], 0),
             (QueuePolicy::Fifo, 3, &[1, 2], &[1, 2], 0),
             (QueuePolicy::Fifo, 3, &[1, 2, 3, 4, 5], &[3, 4, 5], 2),

@@ -1,7 +1,8 @@
 //! A running application: brought up in order, run, and stopped in order, each with a deadline.
 
-mod bring_up;
+mod agenda;
 mod real_time;
+mod stages;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -9,7 +10,6 @@ use std::time::{Duration, Instant};
 
 use crossbeam::channel::Sender;
 use robot_simulation::Simulation;
-use system_model::life_cycle::Operation;
 use system_model::specification::ApplicationSpecification;
 
 use crate::assembly::{Assembly, AssemblyProblem, LibraryOptions, assemble};
@@ -17,14 +17,12 @@ use crate::clock::Clock;
 use crate::component::{ComponentCell, Environment};
 use crate::device::Devices;
 use crate::event_log::{Event, EventLog, EventWriter};
-use crate::executor::Executor;
 use crate::lane::{Crew, Lane, remaining};
-use crate::schedule::{RealTime, Simulated};
 use crate::status::ComponentStatus;
 use crate::summary::{ApplicationSummary, ComponentSummary, Summary, application_state};
 use crate::world::World;
 
-use bring_up::{Agenda, Failure, Step};
+pub use agenda::Failure;
 use real_time::WorldThread;
 
 /// Loading devices, models and maps takes time; a component that is not up by then hangs.
@@ -287,124 +285,5 @@ impl System {
                 .collect(),
             robot: self.world.as_ref().map(|world| world.summary()),
         }
-    }
-
-    /// Constructs and initialises all, then starts all. A component that traps or panics is in
-    /// ERROR and the rest goes on; one that says no stops the whole start.
-    fn bring_up(&mut self) -> Result<(), StartError> {
-        self.environment.events.record(
-            0,
-            Event::RunStarted {
-                application: self.application.clone(),
-                clock: self.options.clock.name(),
-                seed: self.options.seed,
-                components: self.components.len(),
-            },
-        );
-        for steps in [
-            [Step::Construct, Step::Operate(Operation::Initialize)].as_slice(),
-            [Step::Operate(Operation::Start)].as_slice(),
-        ] {
-            let result = self.perform(steps, false, BRING_UP_LIMIT);
-            match result {
-                Ok(failures) if failures.is_empty() => {}
-                Ok(failures) => {
-                    self.shut_down(STOP_LIMIT);
-                    self.abandon("start_refused");
-                    return Err(StartError::Components(failures));
-                }
-                Err(error) => {
-                    self.abandon("start_refused");
-                    return Err(error);
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Ends the log of a start that came to nothing.
-    fn abandon(&self, reason: &'static str) {
-        let events_lost = self.environment.events.lost();
-        self.environment.events.record(
-            self.environment.clock.now_ns(),
-            Event::RunStopped {
-                reason,
-                events_lost,
-            },
-        );
-        self.environment.events.finish();
-        self.crew.dismiss();
-    }
-
-    /// Stops and destroys all, last first.
-    fn shut_down(&self, limit: Duration) {
-        for operation in [Operation::Stop, Operation::Destroy] {
-            // A component that fails while it is stopped is on record; nothing else can be done.
-            let result = self.perform(&[Step::Operate(operation)], true, limit);
-            if result.is_err() {
-                self.notice("stopping the components took too long: some are left behind");
-                return;
-            }
-        }
-    }
-
-    /// Performs steps on all components, on a lane of their own so that a hang or a lost thread
-    /// does not take the container along.
-    fn perform(
-        &self,
-        steps: &[Step],
-        last_first: bool,
-        limit: Duration,
-    ) -> Result<Vec<Failure>, StartError> {
-        let agenda = Agenda::new(Arc::clone(&self.components), steps.to_vec(), last_first);
-        let failures = agenda.failures();
-        let lane = Lane::new("life-cycle", Box::new(agenda));
-        self.crew.start(&lane, || {})?;
-        if !lane.wait(limit) {
-            return Err(StartError::Hangs);
-        }
-        Ok(failures.take())
-    }
-
-    fn launch(&mut self, executors: Vec<Executor>) -> Result<(), StartError> {
-        match self.options.clock {
-            ClockKind::Simulated => {
-                let work = Simulated::new(
-                    executors,
-                    Arc::clone(&self.components),
-                    Arc::clone(&self.environment),
-                    self.world.clone(),
-                    self.options.duration,
-                );
-                let lane = Lane::new("simulated", Box::new(work));
-                self.crew.start(&lane, || {})?;
-                self.lanes.push(lane);
-            }
-            ClockKind::Real => {
-                if let Some(world) = &self.world {
-                    let thread =
-                        WorldThread::start(Arc::clone(world), Arc::clone(&self.environment))?;
-                    self.world_thread = Some(thread);
-                }
-                for executor in executors {
-                    self.launch_executor(executor)?;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn launch_executor(&mut self, executor: Executor) -> Result<(), StartError> {
-        let prepare = real_time::preparation(&executor, Arc::clone(&self.environment));
-        let name = executor.name.clone();
-        let work = RealTime::new(
-            executor,
-            Arc::clone(&self.components),
-            Arc::clone(&self.environment),
-        );
-        let lane = Lane::new(name, Box::new(work));
-        self.crew.start(&lane, prepare)?;
-        self.lanes.push(lane);
-        Ok(())
     }
 }

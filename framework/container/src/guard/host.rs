@@ -1,4 +1,4 @@
-//! The component's way into the container: the host table.
+//! The component's way into the container: what it asks, and who answers.
 //!
 //! Most functions suspend the coroutine with a request; the executor's side answers it on its own
 //! stack. Reading, writing and the clock are answered at once, on the component's stack: they are
@@ -9,7 +9,7 @@
 use std::cell::{Cell, UnsafeCell};
 use std::ptr;
 
-use component_abi::{Header, HostContext, HostTable, Instance, Status, Text};
+use component_abi::{HostContext, Instance, Status, Text};
 use corosensei::Yielder;
 use corosensei::stack::Stack as _;
 
@@ -75,6 +75,10 @@ pub struct ForeignText {
 const LONGEST_TEXT: usize = 4096;
 
 impl ForeignBytes {
+    pub(super) fn new(data: *const u8, size: usize) -> Self {
+        Self { data, size }
+    }
+
     /// How many bytes the component says there are.
     pub fn size(self) -> usize {
         self.size
@@ -89,6 +93,10 @@ impl ForeignBytes {
 }
 
 impl ForeignBytesMut {
+    pub(super) fn new(data: *mut u8, size: usize) -> Self {
+        Self { data, size }
+    }
+
     /// How many bytes the component says there are.
     pub fn size(self) -> usize {
         self.size
@@ -104,7 +112,7 @@ impl ForeignBytesMut {
 }
 
 impl ForeignText {
-    fn new(text: Text) -> Self {
+    pub(super) fn new(text: Text) -> Self {
         Self {
             bytes: ForeignBytes {
                 data: text.data,
@@ -234,7 +242,7 @@ impl HostSide {
 
     /// Answers without leaving the component's stack.
     #[inline]
-    fn answer_here(&self, request: &Request) -> u64 {
+    pub(super) fn answer_here(&self, request: &Request) -> u64 {
         if !self.called_on_own_stack() {
             return u64::from(Status::UNAUTHORIZED.0);
         }
@@ -245,7 +253,7 @@ impl HostSide {
     }
 
     #[inline]
-    fn ask(&self, request: Request) -> u64 {
+    pub(super) fn ask(&self, request: Request) -> u64 {
         if !self.called_on_own_stack() {
             return u64::from(Status::UNAUTHORIZED.0);
         }
@@ -280,166 +288,4 @@ impl HostSide {
 /// Before the first call.
 unsafe fn answer_nothing(_services: *mut (), _request: &Request) -> u64 {
     u64::from(Status::UNAUTHORIZED.0)
-}
-
-/// The table that every component gets.
-pub(super) static TABLE: HostTable = HostTable {
-    header: Header::new(size_of::<HostTable>()),
-    read,
-    write,
-    raise,
-    call,
-    property,
-    now_ns,
-    log,
-    critical,
-    report_fault,
-    failed,
-    open_device,
-};
-
-fn ask(context: *mut HostContext, request: Request) -> Status {
-    status(ask_number(context, request))
-}
-
-fn status(answer: u64) -> Status {
-    u32::try_from(answer).map_or(Status::INTERNAL_FAULT, Status)
-}
-
-/// Asks without leaving the component's stack.
-#[inline]
-fn ask_here(context: *mut HostContext, request: &Request) -> u64 {
-    // SAFETY: as in `ask_number`.
-    match unsafe { context.cast::<HostSide>().as_ref() } {
-        Some(side) => side.answer_here(request),
-        None => u64::from(Status::INPUT_NULL.0),
-    }
-}
-
-fn ask_number(context: *mut HostContext, request: Request) -> u64 {
-    // SAFETY: null, or the host side that this instance was created with; it is leaked, not freed,
-    // when the instance is quarantined. A made-up pointer faults here, on the component's stack.
-    match unsafe { context.cast::<HostSide>().as_ref() } {
-        Some(side) => side.ask(request),
-        None => u64::from(Status::INPUT_NULL.0),
-    }
-}
-
-fn bytes(data: *const u8, size: usize) -> ForeignBytes {
-    ForeignBytes { data, size }
-}
-
-fn bytes_mut(data: *mut u8, size: usize) -> ForeignBytesMut {
-    ForeignBytesMut { data, size }
-}
-
-unsafe extern "C" fn read(
-    context: *mut HostContext,
-    port: u32,
-    data: *mut u8,
-    size: usize,
-) -> Status {
-    let request = Request::Read(port, bytes_mut(data, size));
-    status(ask_here(context, &request))
-}
-
-unsafe extern "C" fn write(
-    context: *mut HostContext,
-    port: u32,
-    data: *const u8,
-    size: usize,
-) -> Status {
-    let request = Request::Write(port, bytes(data, size));
-    status(ask_here(context, &request))
-}
-
-unsafe extern "C" fn raise(
-    context: *mut HostContext,
-    port: u32,
-    data: *const u8,
-    size: usize,
-) -> Status {
-    ask(context, Request::Raise(port, bytes(data, size)))
-}
-
-unsafe extern "C" fn call(
-    context: *mut HostContext,
-    port: u32,
-    method: u32,
-    request: *const u8,
-    request_size: usize,
-    reply: *mut u8,
-    reply_size: usize,
-    deadline_ns: u64,
-) -> Status {
-    let request = bytes(request, request_size);
-    let reply = bytes_mut(reply, reply_size);
-    ask(
-        context,
-        Request::Call(port, method, request, reply, deadline_ns),
-    )
-}
-
-unsafe extern "C" fn property(
-    context: *mut HostContext,
-    name: Text,
-    value: *mut u8,
-    capacity: usize,
-    length: *mut usize,
-) -> Status {
-    let length = bytes_mut(length.cast(), size_of::<usize>());
-    ask(
-        context,
-        Request::Property(ForeignText::new(name), bytes_mut(value, capacity), length),
-    )
-}
-
-unsafe extern "C" fn now_ns(context: *mut HostContext) -> u64 {
-    ask_here(context, &Request::Now)
-}
-
-unsafe extern "C" fn log(context: *mut HostContext, level: u32, message: Text) -> Status {
-    ask(context, Request::Log(level, ForeignText::new(message)))
-}
-
-unsafe extern "C" fn critical(
-    context: *mut HostContext,
-    address: *mut u8,
-    length: usize,
-) -> Status {
-    ask(context, Request::Critical(address, length))
-}
-
-unsafe extern "C" fn report_fault(
-    context: *mut HostContext,
-    code: Status,
-    message: Text,
-) -> Status {
-    ask(
-        context,
-        Request::ReportFault(code, ForeignText::new(message)),
-    )
-}
-
-unsafe extern "C" fn failed(
-    context: *mut HostContext,
-    message: Text,
-    file: Text,
-    line: u32,
-    column: u32,
-) -> Status {
-    let (message, file) = (ForeignText::new(message), ForeignText::new(file));
-    ask(context, Request::Failed(message, file, line, column))
-}
-
-unsafe extern "C" fn open_device(
-    context: *mut HostContext,
-    name: Text,
-    descriptor: *mut i32,
-) -> Status {
-    let descriptor = bytes_mut(descriptor.cast(), size_of::<i32>());
-    ask(
-        context,
-        Request::OpenDevice(ForeignText::new(name), descriptor),
-    )
 }

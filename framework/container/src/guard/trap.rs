@@ -186,9 +186,9 @@ fn sent_by_others(information: &libc::siginfo_t) -> bool {
     if information.si_code != libc::SI_USER {
         return false;
     }
-    // SAFETY: for SI_USER the kernel fills the sender's process id; getpid has no precondition.
-    let (sender, own) = unsafe { (information.si_pid(), libc::getpid()) };
-    sender != own
+    // SAFETY: for SI_USER the kernel fills the sender's process id.
+    let sender = unsafe { information.si_pid() };
+    u32::try_from(sender) != Ok(std::process::id())
 }
 
 fn record(

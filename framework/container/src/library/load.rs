@@ -111,7 +111,8 @@ fn check_header(header: &Header, path: &Path) -> Result<(), LibraryError> {
         });
     }
     let ours = format!("{ABI_MAJOR}.{ABI_MINOR}");
-    let fits = header.major == ABI_MAJOR && header.minor <= ABI_MINOR;
+    // A library may be older than the container within one major version, not newer.
+    let fits = header.major == ABI_MAJOR && ABI_MINOR.checked_sub(header.minor).is_some();
     let whole = header.size >= size_of::<LibraryDescriptor>() as u64;
     if !fits {
         return Err(LibraryError::Version {

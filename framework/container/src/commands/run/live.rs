@@ -1,7 +1,8 @@
 //! The view of a running application: a table that is redrawn on a terminal, plain lines else.
 
 use std::io::{self, Write as _};
-use std::time::Instant;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use container::event_log::Event;
 use container::status::ComponentStatus;
@@ -23,8 +24,13 @@ struct Table {
     robot: ProgressBar,
     components: Vec<ProgressBar>,
     application: String,
-    last: Option<(Instant, Vec<u64>)>,
+    /// When cycles were last counted, and how many there were.
+    counted: Option<(Instant, Vec<u64>)>,
+    rates_hz: Vec<f64>,
 }
+
+/// Over how long rates are counted: at 10 Hz that is ten cycles, so the figure stands still.
+const RATE_WINDOW: Duration = Duration::from_secs(1);
 
 impl Watcher {
     pub(super) fn new(application: &str, lines: Receiver<(u64, Event)>) -> Self {
@@ -122,7 +128,8 @@ impl Table {
             robot,
             components: Vec::new(),
             application: application.to_owned(),
-            last: None,
+            counted: None,
+            rates_hz: Vec::new(),
         }
     }
 
@@ -144,16 +151,26 @@ impl Table {
         while self.components.len() < statuses.len() {
             self.components.push(self.lines.add(line()));
         }
-        let now = Instant::now();
-        let cycles: Vec<u64> = statuses.iter().map(|status| status.cycles()).collect();
+        self.count(statuses);
         for (index, (status, bar)) in statuses.iter().zip(&self.components).enumerate() {
-            let rate_hz = self.last.as_ref().map(|(then, before)| {
-                let passed_s = now.duration_since(*then).as_secs_f64();
-                (cycles[index] - before[index]) as f64 / passed_s.max(1e-9)
-            });
+            let rate_hz = self.rates_hz.get(index).copied();
             bar.set_message(component_line(status, rate_hz));
         }
-        self.last = Some((now, cycles));
+    }
+
+    fn count(&mut self, statuses: &[Arc<ComponentStatus>]) {
+        let now = Instant::now();
+        let cycles: Vec<u64> = statuses.iter().map(|status| status.cycles()).collect();
+        let Some((then, before)) = &self.counted else {
+            self.counted = Some((now, cycles));
+            return;
+        };
+        let passed = now.duration_since(*then);
+        if passed >= RATE_WINDOW {
+            let rate = |(now, before): (&u64, &u64)| (now - before) as f64 / passed.as_secs_f64();
+            self.rates_hz = cycles.iter().zip(before).map(rate).collect();
+            self.counted = Some((now, cycles));
+        }
     }
 }
 

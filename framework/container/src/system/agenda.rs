@@ -104,16 +104,16 @@ impl Agenda {
             Step::Operate(operation) => component.operate(operation, lane.loss()),
         };
         if let Err(OperationError::Failed(fault)) = result {
-            self.judge(&component, fault);
+            self.judge(&component, &fault);
         }
     }
 
     /// A crash is contained and the rest goes on; a refusal is for the person to deal with.
-    fn judge(&self, component: &Component, fault: Box<Fault>) {
+    fn judge(&self, component: &Component, fault: &Fault) {
         if fault.kind == FaultKind::ErrorReturn {
             self.failures.push(Failure {
                 component: component.name().to_string(),
-                fault: *fault,
+                fault: fault.clone(),
             });
         }
     }

@@ -1,0 +1,109 @@
+//! What components ask for now and then: properties, log, fault reports, devices.
+
+use component_abi::Status;
+use system_model::fault::{Fault, FaultKind};
+
+use super::Services;
+use crate::event_log::Event;
+use crate::guard::{ForeignBytesMut, ForeignText};
+
+impl Services {
+    pub(super) fn property(
+        &mut self,
+        name: ForeignText,
+        value: ForeignBytesMut,
+        length: ForeignBytesMut,
+    ) -> Result<Status, Status> {
+        let name = self.text(name, "property")?;
+        // The subcomponent's own values stand last and win.
+        let found = self.properties.iter().rev().find(|(key, _)| *key == name);
+        let Some((_, text)) = found else {
+            return Ok(Status::NOTHING);
+        };
+        let bytes = text.as_bytes();
+        if !length.copy_from(&bytes.len().to_ne_bytes()) {
+            return Err(self.bad_pointer("property"));
+        }
+        if bytes.len() > value.size() {
+            return Ok(Status::OUT_OF_RESOURCES);
+        }
+        if value.copy_from(bytes) {
+            Ok(Status::SUCCESS)
+        } else {
+            Err(self.bad_pointer("property"))
+        }
+    }
+
+    pub(super) fn log(&mut self, level: u32, message: ForeignText) -> Result<Status, Status> {
+        let message = self.text(message, "log")?;
+        let level = match level {
+            1 => "error",
+            2 => "warning",
+            3 => "information",
+            _ => "debug",
+        };
+        self.record(Event::Log {
+            component: self.name.to_string(),
+            level,
+            message,
+        });
+        Ok(Status::SUCCESS)
+    }
+
+    pub(super) fn report_fault(
+        &mut self,
+        code: Status,
+        message: ForeignText,
+    ) -> Result<Status, Status> {
+        let message = self.text(message, "report_fault")?;
+        let fault = Fault {
+            kind: FaultKind::Reported,
+            callback: self.callback,
+            message: format!("{message} ({code})"),
+            place: None,
+            thread_lost: false,
+        };
+        self.record(Event::fault(&self.name, self.incarnation, &fault));
+        Ok(Status::SUCCESS)
+    }
+
+    pub(super) fn failed(
+        &mut self,
+        message: ForeignText,
+        file: ForeignText,
+        line: u32,
+        column: u32,
+    ) -> Result<Status, Status> {
+        let message = self.text(message, "failed")?;
+        let file = self.text(file, "failed")?;
+        self.failure = Some((message, file, line, column));
+        Ok(Status::SUCCESS)
+    }
+
+    pub(super) fn open_device(
+        &mut self,
+        name: ForeignText,
+        descriptor: ForeignBytesMut,
+    ) -> Result<Status, Status> {
+        let name = self.text(name, "open_device")?;
+        match self.environment.devices.open(&name) {
+            Ok(device) => {
+                let number = device.number();
+                if descriptor.copy_from(&number.to_ne_bytes()) {
+                    device.give_away();
+                    Ok(Status::SUCCESS)
+                } else {
+                    Err(self.bad_pointer("open_device"))
+                }
+            }
+            Err(error) => {
+                self.record(Event::Log {
+                    component: self.name.to_string(),
+                    level: "error",
+                    message: error.to_string(),
+                });
+                Ok(Status::CALLEE_ERROR)
+            }
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! The stages of an application's life: bringing up, launching the executors, shutting down.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use system_model::life_cycle::Operation;
+use system_model::specification::SchedulingPolicy;
+
+use super::agenda::{Agenda, Failure, Step};
+use super::real_time::{self, WorldThread};
+use super::{BRING_UP_LIMIT, ClockKind, STOP_LIMIT, StartError, System};
+use crate::event_log::Event;
+use crate::executor::Executor;
+use crate::lane::Lane;
+use crate::schedule::{RealTime, Simulated};
+
+impl System {
+    /// Constructs and initialises all, then starts all. A component that traps or panics is in
+    /// ERROR and the rest goes on; one that says no stops the whole start.
+    pub(super) fn bring_up(&mut self) -> Result<(), StartError> {
+        self.environment.events.record(
+            0,
+            Event::RunStarted {
+                application: self.application.clone(),
+                clock: self.options.clock.name(),
+                seed: self.options.seed,
+                components: self.components.len(),
+            },
+        );
+        for steps in [
+            [Step::Construct, Step::Operate(Operation::Initialize)].as_slice(),
+            [Step::Operate(Operation::Start)].as_slice(),
+        ] {
+            let result = self.perform(steps, false, BRING_UP_LIMIT);
+            match result {
+                Ok(failures) if failures.is_empty() => {}
+                Ok(failures) => {
+                    self.shut_down(STOP_LIMIT);
+                    self.abandon("start_refused");
+                    return Err(StartError::Components(failures));
+                }
+                Err(error) => {
+                    self.abandon("start_refused");
+                    return Err(error);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Ends the log of a start that came to nothing.
+    fn abandon(&self, reason: &'static str) {
+        let events_lost = self.environment.events.lost();
+        self.environment.events.record(
+            self.environment.clock.now_ns(),
+            Event::RunStopped {
+                reason,
+                events_lost,
+            },
+        );
+        self.environment.events.finish();
+        self.crew.dismiss();
+    }
+
+    /// Stops and destroys all, last first.
+    pub(super) fn shut_down(&self, limit: Duration) {
+        for operation in [Operation::Stop, Operation::Destroy] {
+            // A component that fails while it is stopped is on record; nothing else can be done.
+            let result = self.perform(&[Step::Operate(operation)], true, limit);
+            if result.is_err() {
+                self.notice("stopping the components took too long: some are left behind");
+                return;
+            }
+        }
+    }
+
+    /// Performs steps on all components, on a lane of their own so that a hang or a lost thread
+    /// does not take the container along.
+    fn perform(
+        &self,
+        steps: &[Step],
+        last_first: bool,
+        limit: Duration,
+    ) -> Result<Vec<Failure>, StartError> {
+        let agenda = Agenda::new(Arc::clone(&self.components), steps.to_vec(), last_first);
+        let failures = agenda.failures();
+        let lane = Lane::new("life-cycle", Box::new(agenda));
+        self.crew.start(&lane, || {})?;
+        if !lane.wait(limit) {
+            return Err(StartError::Hangs);
+        }
+        Ok(failures.take())
+    }
+
+    pub(super) fn launch(&mut self, executors: Vec<Executor>) -> Result<(), StartError> {
+        match self.options.clock {
+            ClockKind::Simulated => {
+                let work = Simulated::new(
+                    executors,
+                    Arc::clone(&self.components),
+                    Arc::clone(&self.environment),
+                    self.world.clone(),
+                    self.options.duration,
+                );
+                let lane = Lane::new("simulated", Box::new(work));
+                self.crew.start(&lane, || {})?;
+                self.lanes.push(lane);
+            }
+            ClockKind::Real => {
+                if executors
+                    .iter()
+                    .any(|one| one.policy != SchedulingPolicy::Other)
+                {
+                    self.lock_memory();
+                }
+                if let Some(world) = &self.world {
+                    let thread =
+                        WorldThread::start(Arc::clone(world), Arc::clone(&self.environment))?;
+                    self.world_thread = Some(thread);
+                }
+                for executor in executors {
+                    self.launch_executor(executor)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn launch_executor(&mut self, executor: Executor) -> Result<(), StartError> {
+        let prepare = real_time::preparation(&executor, Arc::clone(&self.environment));
+        let name = executor.name.clone();
+        let work = RealTime::new(
+            executor,
+            Arc::clone(&self.components),
+            Arc::clone(&self.environment),
+        );
+        let lane = Lane::new(name, Box::new(work));
+        self.crew.start(&lane, prepare)?;
+        self.lanes.push(lane);
+        Ok(())
+    }
+
+    /// Pages that are swapped out or not there yet would stop a real-time thread for milliseconds.
+    /// Stacks and buffers are locked as they are touched, not all at once.
+    fn lock_memory(&self) {
+        use rustix::mm::{MlockAllFlags, mlockall};
+        let flags = MlockAllFlags::CURRENT | MlockAllFlags::FUTURE | MlockAllFlags::ONFAULT;
+        if let Err(error) = mlockall(flags) {
+            self.notice(&format!(
+                "memory cannot be locked ({error}): real-time executors may wait for pages"
+            ));
+        }
+    }
+}
