@@ -59,11 +59,15 @@ impl ComponentCell {
         if !self.shared.load(Ordering::Relaxed) {
             return Some(Entered { cell: self });
         }
-        self.entered
-            .compare_exchange(0, token, Ordering::Acquire, Ordering::Relaxed)
-            .is_ok()
-            .then_some(Entered { cell: self })
-            .or_else(|| self.enter_slowly(token, limit))
+        let free =
+            self.entered
+                .compare_exchange(0, token, Ordering::Acquire, Ordering::Relaxed);
+        // Only made when inside: dropping an `Entered` leaves the component.
+        if free.is_ok() {
+            Some(Entered { cell: self })
+        } else {
+            self.enter_slowly(token, limit)
+        }
     }
 
     #[cold]
