@@ -270,7 +270,10 @@ impl Component {
             self.guarded.quarantine();
         }
         self.record(fault.clone());
-        if !self.guarded.is_alive() {
+        // A component that hands out bad pointers must not be started; one that is active goes to
+        // ERROR by way of `onError`.
+        let unfit = fault.kind == FaultKind::BadPointer && !self.is_active();
+        if unfit || !self.guarded.is_alive() {
             self.enter_state(LifeCycleState::Error);
         }
         Box::new(fault)

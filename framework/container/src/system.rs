@@ -161,7 +161,11 @@ impl System {
             lanes: Vec::new(),
             writer,
         };
-        system.bring_up()?;
+        if let Err(error) = system.bring_up() {
+            // The refusal counts; a log that cannot be written either does not change it.
+            let _log_error = system.close();
+            return Err(error);
+        }
         system.launch(executors)?;
         Ok(system)
     }

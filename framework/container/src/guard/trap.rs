@@ -177,7 +177,7 @@ extern "C" fn handle(
                 unsafe { &*frame.loss }.publish_and_park(frame, trap);
             }
         }
-        _ => fail_container(signal),
+        _ => fail_container(signal, information),
     }
 }
 
@@ -229,11 +229,13 @@ fn take_off(frame: &Frame, trap: Trap, context: &mut libc::ucontext_t) {
 
 /// Not a component's fault: the default action ends the process, with a core dump where the
 /// system writes one.
-fn fail_container(signal: libc::c_int) {
+fn fail_container(signal: libc::c_int, information: &libc::siginfo_t) {
     // SAFETY: both calls are allowed in signal handlers.
     unsafe { libc::signal(signal, libc::SIG_DFL) };
-    if signal == libc::SIGABRT {
-        // SAFETY: as above. A synchronous signal comes again by itself when the handler returns.
+    // What the processor raised comes again by itself when the handler returns; what somebody sent
+    // (codes up to 0) does not.
+    if information.si_code <= 0 {
+        // SAFETY: as above.
         unsafe { libc::raise(signal) };
     }
 }

@@ -48,7 +48,7 @@ impl System {
         Ok(())
     }
 
-    /// Ends the log of a start that came to nothing.
+    /// Puts on record that the start came to nothing.
     fn abandon(&self, reason: &'static str) {
         let events_lost = self.environment.events.lost();
         self.environment.events.record(
@@ -58,8 +58,6 @@ impl System {
                 events_lost,
             },
         );
-        self.environment.events.finish();
-        self.crew.dismiss();
     }
 
     /// Stops and destroys all, last first.
