@@ -78,3 +78,147 @@ fn in_callbacks_of_a_cycle() {
         }
     }
 }
+
+/// Before it runs: a crash is contained and the rest runs, a refusal stops the whole start.
+#[test]
+fn in_callbacks_before_the_first_cycle() {
+    for (misbehaviour, kind) in MISBEHAVIOURS {
+        for callback in ["onPeriodChanged", "onInitialize", "onStart"] {
+            let outcome = application(misbehaviour, callback, 1).simulate("1s");
+            if kind == "error_return" {
+                outcome.was_refused_after(5, &["'faulty'", callback, "on purpose"]);
+                continue;
+            }
+            let outcome = outcome.ended_well();
+            let expected = (kind.to_owned(), callback.to_owned());
+            assert_eq!(outcome.faults("faulty"), [expected], "{misbehaviour}");
+            let context = format!("{misbehaviour} in {callback}");
+            assert_eq!(outcome.component("faulty")["state"], "ERROR", "{context}");
+            assert_eq!(outcome.application()["state"], "DEGRADED", "{context}");
+            assert_eq!(outcome.cycles("faulty"), 0, "{context}");
+            nothing_was_missed(&outcome);
+        }
+    }
+}
+
+/// While it is stopped: the run is over, but the others are stopped in order all the same.
+#[test]
+fn in_callbacks_after_the_last_cycle() {
+    for (misbehaviour, kind) in MISBEHAVIOURS {
+        for callback in ["onStop", "onDestroy"] {
+            let outcome = application(misbehaviour, callback, 1)
+                .simulate("1s")
+                .ended_well();
+            let expected = (kind.to_owned(), callback.to_owned());
+            assert_eq!(outcome.faults("faulty"), [expected], "{misbehaviour}");
+            assert_eq!(outcome.cycles("faulty"), CYCLES);
+            nothing_was_missed(&outcome);
+            for healthy in ["counter", "recorder"] {
+                let states = outcome.states(healthy);
+                assert_eq!(
+                    states,
+                    ["READY", "ACTIVE", "INACTIVE", "DESTROYED"],
+                    "{healthy}"
+                );
+            }
+        }
+    }
+}
+
+/// In a service: the caller gets an answer and goes on, unless its own thread was lost inside.
+#[test]
+fn in_a_call_of_another_component() {
+    for (misbehaviour, kind) in MISBEHAVIOURS {
+        let outcome = application(misbehaviour, "onCall", 5)
+            .simulate("1s")
+            .ended_well();
+        let answers = outcome.logs("asker");
+        if kind == "error_return" {
+            // Saying no is an answer, not a fault.
+            let expected = ["answer 42", "answer 502 INTERNAL_FAULT", "answer 42"];
+            assert_eq!(answers, expected, "{misbehaviour}");
+            assert_eq!(outcome.component("faulty")["state"], "ACTIVE");
+            continue;
+        }
+        let expected = (kind.to_owned(), "onCall".to_owned());
+        assert_eq!(outcome.faults("faulty"), [expected], "{misbehaviour}");
+        assert_eq!(
+            outcome.component("faulty")["state"],
+            "ERROR",
+            "{misbehaviour}"
+        );
+        assert_eq!(outcome.application()["state"], "DEGRADED");
+        if misbehaviour == "crashes_in_libc" {
+            assert_eq!(answers, ["answer 42"]);
+            assert_eq!(outcome.component("asker")["state"], "ERROR");
+        } else {
+            let refused = "answer 405 PRECONDITION_NOT_MET";
+            let expected = ["answer 42", "answer 502 INTERNAL_FAULT", refused];
+            assert_eq!(answers, expected, "{misbehaviour}");
+            assert_eq!(outcome.cycles("asker"), CYCLES, "{misbehaviour}");
+        }
+        for healthy in ["counter", "recorder", "sink", "herald"] {
+            assert_eq!(outcome.cycles(healthy), CYCLES, "{misbehaviour}: {healthy}");
+        }
+    }
+}
+
+/// All at once, each on a thread of its own, by the machine's clock.
+#[test]
+fn all_at_once_in_real_time() {
+    let mut application = healthy();
+    for (misbehaviour, _) in MISBEHAVIOURS {
+        application = application
+            .with(&Member::new(misbehaviour, misbehaviour))
+            .with(&Member::new(&format!("sink_of_{misbehaviour}"), "recorder"))
+            .connect(
+                "data",
+                &format!("{misbehaviour}.output"),
+                &format!("sink_of_{misbehaviour}.input"),
+            );
+    }
+    let outcome = application.run_really("1500ms").ended_well();
+    for (misbehaviour, kind) in MISBEHAVIOURS {
+        let expected = (kind.to_owned(), "onExecute".to_owned());
+        assert_eq!(outcome.faults(misbehaviour), [expected], "{misbehaviour}");
+        assert_eq!(outcome.component(misbehaviour)["state"], "ERROR");
+        assert_eq!(outcome.cycles(misbehaviour), 4, "{misbehaviour}");
+        let lost = &outcome.events("fault", misbehaviour)[0]["thread_lost"];
+        assert_eq!(*lost, misbehaviour == "crashes_in_libc", "{misbehaviour}");
+        // What was sent before the fault was received; only a bad pointer lets the callback go on.
+        let sent = if misbehaviour == "bad_pointer" { 5 } else { 4 };
+        let sink = outcome.logs(&format!("sink_of_{misbehaviour}"));
+        assert_eq!(
+            sink,
+            [format!("received {sent}, last {sent}, gaps 0")],
+            "{misbehaviour}"
+        );
+    }
+    assert_eq!(outcome.application()["state"], "DEGRADED");
+    assert_eq!(outcome.component("counter")["state"], "ACTIVE");
+    // The faults strike in the fifth cycle; the healthy ones went on long after.
+    assert!(
+        outcome.cycles("counter") > 20,
+        "{}",
+        outcome.cycles("counter")
+    );
+    let logs = outcome.logs("recorder");
+    assert!(logs[0].ends_with("gaps 0"), "{logs:?}");
+}
+
+/// The fault says where in the source, for a panic.
+#[test]
+fn a_panic_tells_its_text_and_place() {
+    let outcome = application("panics", "onExecute", 1)
+        .simulate("50ms")
+        .ended_well();
+    let fault = outcome.events("fault", "faulty")[0];
+    assert_eq!(fault["message"], "on purpose");
+    let place = fault["place"].as_str().expect("a panic has a place");
+    assert!(
+        place.starts_with("tests/faulty-components/panics/src/lib.rs:"),
+        "{place}"
+    );
+    assert_eq!(fault["t_ns"], 0);
+    assert_eq!(fault["incarnation"], 1);
+}

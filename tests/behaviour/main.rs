@@ -1,5 +1,14 @@
 //! What Steadfast promises, seen from outside.
 #![forbid(unsafe_code)]
 
+mod bad_files;
+mod bad_libraries;
 mod c_component;
+mod clocks;
+mod events;
+mod execution;
 mod faults;
+mod life_cycle;
+mod ports;
+mod services;
+mod stopping;

@@ -42,12 +42,25 @@ impl Outcome {
         self
     }
 
-    /// It was refused with this exit code, each of these words on the error output, and nothing
-    /// was started.
+    /// It was refused with this exit code, each of these words on the error output, and no callback
+    /// of any component has started it.
     ///
     /// # Panics
     /// If not.
     pub fn was_refused(&self, code: i32, words: &[&str]) {
+        self.was_refused_after(code, words);
+        assert!(
+            !self.raw_events.contains("\"to\":\"ACTIVE\""),
+            "nothing may have been started: {}",
+            self.raw_events
+        );
+    }
+
+    /// As [`Self::was_refused`], by a component that said no when others had said yes.
+    ///
+    /// # Panics
+    /// If not.
+    pub fn was_refused_after(&self, code: i32, words: &[&str]) {
         assert_eq!(self.finished.code, Some(code), "{}", self.finished);
         for word in words {
             assert!(
@@ -57,8 +70,8 @@ impl Outcome {
             );
         }
         assert!(
-            !self.raw_events.contains("\"to\":\"ACTIVE\""),
-            "nothing may have been started: {}",
+            !self.raw_events.contains("onExecute"),
+            "nothing may have run: {}",
             self.raw_events
         );
         assert_eq!(self.summary, Value::Null, "nothing ran");

@@ -135,9 +135,19 @@ impl fmt::Display for Finished {
         write!(
             formatter,
             "{} ended with {:?}\n--- stdout\n{}\n--- stderr\n{}",
-            self.words, self.code, self.stdout, self.stderr
+            self.words,
+            self.code,
+            end_of(&self.stdout),
+            end_of(&self.stderr)
         )
     }
+}
+
+/// As much as a person reads.
+fn end_of(text: &str) -> &str {
+    const LONGEST_QUOTATION: usize = 5000;
+    let start = text.ceil_char_boundary(text.len().saturating_sub(LONGEST_QUOTATION));
+    &text[start..]
 }
 
 fn content(file: &mut File) -> String {

@@ -1,4 +1,6 @@
 //! Logs the numbers of the events that it hears.
+//!
+//! Property `fails_at`: the cycle that it fails in (default: none).
 #![forbid(unsafe_code)]
 
 use component_sdk::prelude::*;
@@ -11,13 +13,35 @@ struct Ports {
 
 struct Listener {
     ports: Ports,
+    cycles_left: Option<u64>,
 }
 
 impl Component for Listener {
     type Ports = Ports;
 
     fn new(ports: Ports) -> Self {
-        Self { ports }
+        Self {
+            ports,
+            cycles_left: None,
+        }
+    }
+
+    fn on_initialize(&mut self, context: &Context) -> Outcome {
+        self.cycles_left = match context.property_or("fails_at", 0)? {
+            0 => None,
+            cycle => Some(cycle),
+        };
+        Ok(())
+    }
+
+    fn on_execute(&mut self, _context: &Context) -> Outcome {
+        if let Some(left) = &mut self.cycles_left {
+            *left -= 1;
+            if *left == 0 {
+                return Err(Failure::internal("as the property says"));
+            }
+        }
+        Ok(())
     }
 
     fn on_event(&mut self, context: &Context, event: &Event<'_>) -> Outcome {
