@@ -241,7 +241,7 @@ impl Component {
         name: &'static str,
         loss: &Loss,
     ) -> Result<(), Box<Fault>> {
-        self.services.set_callback(name);
+        self.services.begin(name);
         let ending = self.guarded.call(callback, loss, &mut self.services);
         match ending {
             Ending::Returned(status) if status.is_success() && !self.services.has_bad_pointer() => {

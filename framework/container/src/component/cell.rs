@@ -59,9 +59,9 @@ impl ComponentCell {
         if !self.shared.load(Ordering::Relaxed) {
             return Some(Entered { cell: self });
         }
-        let free =
-            self.entered
-                .compare_exchange(0, token, Ordering::Acquire, Ordering::Relaxed);
+        let free = self
+            .entered
+            .compare_exchange(0, token, Ordering::Acquire, Ordering::Relaxed);
         // Only made when inside: dropping an `Entered` leaves the component.
         if free.is_ok() {
             Some(Entered { cell: self })

@@ -37,10 +37,22 @@ pub struct Services {
     properties: Vec<(String, String)>,
     cycle_ns: u64,
     callback: &'static str,
-    failure: Option<(String, String, u32, u32)>,
+    /// What was said during this callback of why it fails; boxed, because it is rare.
+    explanation: Option<Box<Explanation>>,
     last_status: Status,
     bad_pointer: Option<&'static str>,
     critical_bytes: Option<(usize, usize)>,
+}
+
+/// Why a callback fails.
+#[derive(Debug, Default)]
+struct Explanation {
+    /// The component's words.
+    message: String,
+    /// File, line and column in its source.
+    place: Option<(String, u32, u32)>,
+    /// Why a device did not open.
+    device: Option<String>,
 }
 
 impl Services {
@@ -61,7 +73,7 @@ impl Services {
             properties,
             cycle_ns: 0,
             callback: "",
-            failure: None,
+            explanation: None,
             last_status: Status::SUCCESS,
             bad_pointer: None,
             critical_bytes: None,
@@ -115,8 +127,9 @@ impl Services {
         self.cycle_ns = now_ns;
     }
 
-    pub(super) fn set_callback(&mut self, name: &'static str) {
-        self.callback = name;
+    pub(super) fn begin(&mut self, callback: &'static str) {
+        self.callback = callback;
+        self.explanation = None;
     }
 
     /// The callback that is under way, or was the last.
@@ -151,8 +164,9 @@ impl Services {
                 thread_lost: false,
             };
         }
-        let (message, file, line, column) = self.failure.take().unwrap_or_default();
+        let explanation = self.explanation.take().unwrap_or_default();
         let panicked = status == Status::PANICKED;
+        let message = explanation.message;
         Fault {
             kind: if panicked {
                 FaultKind::Panic
@@ -163,9 +177,12 @@ impl Services {
             message: match (panicked, message.is_empty()) {
                 (true, _) => message,
                 (false, true) => format!("it returned {status}"),
-                (false, false) => format!("{message} ({status})"),
+                (false, false) => match explanation.device {
+                    Some(device) => format!("{message} ({status}): {device}"),
+                    None => format!("{message} ({status})"),
+                },
             },
-            place: (line > 0).then_some((file, line, column)),
+            place: explanation.place,
             thread_lost: false,
         }
     }

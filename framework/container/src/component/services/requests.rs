@@ -76,7 +76,9 @@ impl Services {
     ) -> Result<Status, Status> {
         let message = self.text(message, "failed")?;
         let file = self.text(file, "failed")?;
-        self.failure = Some((message, file, line, column));
+        let explanation = self.explanation.get_or_insert_default();
+        explanation.message = message;
+        explanation.place = (line > 0).then_some((file, line, column));
         Ok(Status::SUCCESS)
     }
 
@@ -102,6 +104,7 @@ impl Services {
                     level: "error",
                     message: error.to_string(),
                 });
+                self.explanation.get_or_insert_default().device = Some(error.to_string());
                 Ok(Status::CALLEE_ERROR)
             }
         }
