@@ -49,12 +49,7 @@ enum SendBuffer {
 enum ReceiveBuffer {
     Last(triple_buffer::Output<Datum>),
     Fifo(Reader<Datum>),
-    Lifo {
-        arrivals: Reader<Datum>,
-        /// Newest last; never grows beyond its capacity.
-        stack: Vec<Datum>,
-        taken: Datum,
-    },
+    Lifo { arrivals: Reader<Datum>, pile: Pile },
 }
 
 /// Makes a connection for data of `size` bytes that keeps as much as the policy says.
@@ -79,8 +74,10 @@ pub fn connection(policy: QueuePolicy, queue_size: usize, size: usize) -> (Sende
             let (writer, arrivals) = overwriting_queue::queue(queue_size, &empty);
             let receive = ReceiveBuffer::Lifo {
                 arrivals,
-                stack: Vec::with_capacity(queue_size),
-                taken: empty,
+                pile: Pile {
+                    slots: vec![empty; queue_size],
+                    filled: 0,
+                },
             };
             (SendBuffer::Queue(writer), receive)
         }
@@ -147,16 +144,13 @@ impl Receiver {
                 }
             }
             ReceiveBuffer::Fifo(reader) => reader.take(),
-            ReceiveBuffer::Lifo {
-                arrivals,
-                stack,
-                taken,
-            } => {
+            ReceiveBuffer::Lifo { arrivals, pile } => {
                 while let Some(datum) = arrivals.take() {
-                    push_newest(stack, datum, &self.counts);
+                    if pile.push(datum) {
+                        increase(&self.counts.dropped);
+                    }
                 }
-                *taken = stack.pop()?;
-                Some(taken)
+                pile.pop()
             }
         }
     }
@@ -172,13 +166,32 @@ impl Receiver {
     }
 }
 
-/// Adds to a stack that is full by forgetting the oldest.
-fn push_newest(stack: &mut Vec<Datum>, datum: &Datum, counts: &Counts) {
-    if stack.len() == stack.capacity() {
-        stack.remove(0);
-        increase(&counts.dropped);
+/// What a LIFO input holds, newest on top. Its buffers are made once.
+struct Pile {
+    slots: Vec<Datum>,
+    filled: usize,
+}
+
+impl Pile {
+    /// Puts a copy on top; true if the oldest had to go for it.
+    fn push(&mut self, datum: &Datum) -> bool {
+        let full = self.filled == self.slots.len();
+        if full {
+            self.slots.rotate_left(1);
+        } else {
+            self.filled += 1;
+        }
+        let top = &mut self.slots[self.filled - 1];
+        top.stamp_ns = datum.stamp_ns;
+        top.incarnation = datum.incarnation;
+        top.bytes.copy_from_slice(&datum.bytes);
+        full
     }
-    stack.push(datum.clone());
+
+    fn pop(&mut self) -> Option<&Datum> {
+        self.filled = self.filled.checked_sub(1)?;
+        self.slots.get(self.filled)
+    }
 }
 
 /// Adds one to a counter that has a single writer at a time: a plain store, not a locked one.
