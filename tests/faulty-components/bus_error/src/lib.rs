@@ -13,8 +13,7 @@ impl Misbehaviour for BusError {
         let file = unsafe { libc::memfd_create(c"empty".as_ptr(), libc::MFD_CLOEXEC) };
         let (protection, flags) = (libc::PROT_READ, libc::MAP_SHARED);
         // SAFETY: a new mapping at an address that the kernel chooses.
-        let page =
-            unsafe { libc::mmap(std::ptr::null_mut(), LENGTH, protection, flags, file, 0) };
+        let page = unsafe { libc::mmap(std::ptr::null_mut(), LENGTH, protection, flags, file, 0) };
         // SAFETY: the mapping keeps the file; the descriptor is ours.
         unsafe { libc::close(file) };
         if page == libc::MAP_FAILED {
