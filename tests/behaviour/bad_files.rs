@@ -93,7 +93,7 @@ fn outputs_that_cannot_be_written() {
     // Without a world there is no drive to draw.
     assert_eq!(outcome.finished().code, Some(0), "{}", outcome.finished());
     let application = Application::new().with(&Member::new("counter", "counter"));
-    std::fs::create_dir(application.events_file()).expect("a folder in the way");
+    std::fs::create_dir(application.folder().join("events.jsonl")).expect("a folder in the way");
     let finished = application
         .start(&["--clock", "simulated", "--for", "1s"])
         .wait(std::time::Duration::from_secs(100));

@@ -91,11 +91,13 @@ fn real_time_is_kept() {
         })
         .map(|event| event["t_ns"].as_u64().expect("a time"))
         .collect();
-    assert!(starts.len() > 1, "{starts:?}");
+    assert!(!starts.is_empty());
+    #[allow(clippy::cast_precision_loss)] // a handful
+    let cycles = starts.len() as f64;
+    // One at the start, and some between the judgement and the stop.
     assert!(
-        starts.len() <= 17,
-        "no more cycles than fit: {}",
-        starts.len()
+        cycles <= time / 0.02 + 3.0,
+        "no more cycles than fit: {cycles} in {time} s"
     );
     assert!(starts.is_sorted());
 }

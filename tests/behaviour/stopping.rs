@@ -4,30 +4,10 @@ use std::process::Command;
 use std::time::Duration;
 
 use rustix::process::Signal;
-use tests::{Application, Finished, Member, Watched, artifacts, until};
+use tests::{Application, Member, Watched, artifacts};
 
-/// The container promises three seconds; a busy machine gets more.
-const STOP_LIMIT: Duration = Duration::from_secs(30);
-
-/// Until the application runs.
-const START_LIMIT: Duration = Duration::from_secs(60);
-
-/// Starts an application, waits until `sign` is in the events, and interrupts it.
-fn interrupted(
-    application: &Application,
-    arguments: &[&str],
-    sign: &str,
-    signal: Signal,
-) -> Finished {
-    let child = application.start(arguments);
-    let events = application.events_file();
-    let runs = until(START_LIMIT, || {
-        std::fs::read_to_string(&events).is_ok_and(|text| text.contains(sign))
-    });
-    assert!(runs, "'{sign}' is not in {}", events.display());
-    child.signal(signal);
-    child.wait(STOP_LIMIT)
-}
+/// Saying no takes milliseconds.
+const REFUSAL_LIMIT: Duration = Duration::from_secs(30);
 
 #[test]
 fn by_a_signal_in_order() {
@@ -37,8 +17,10 @@ fn by_a_signal_in_order() {
                 .with(&Member::new("first", "diary").period(200))
                 .with(&Member::new("second", "diary").period(200));
             let arguments = ["--clock", clock];
-            let finished = interrupted(&application, &arguments, "onExecute", signal);
-            let outcome = application.outcome(finished).ended_well();
+            let runs = |events: &str| events.contains("onExecute");
+            let outcome = application
+                .interrupt_when(&arguments, signal, runs)
+                .ended_well();
             assert_eq!(outcome.application()["ended_by"], "stopped", "{clock}");
             let last: Vec<String> = outcome
                 .all_events()
@@ -70,8 +52,9 @@ fn although_a_component_hangs() {
                     .property("callback", callback)
                     .property("at_cycle", "1"),
             );
-        let finished = interrupted(&application, &[], "onExecute", Signal::INT);
-        let outcome = application.outcome(finished).ended_well();
+        let outcome = application
+            .run_until(|events| events.contains("onExecute"))
+            .ended_well();
         assert!(outcome.raw_events().contains("left behind"), "{callback}");
     }
 }
@@ -89,8 +72,8 @@ fn after_faults() {
     ] {
         application = application.with(&Member::new(misbehaviour, misbehaviour));
     }
-    let finished = interrupted(&application, &[], "\"thread_lost\":true", Signal::INT);
-    let outcome = application.outcome(finished).ended_well();
+    let all = |events: &str| events.matches("\"event\":\"fault\"").count() == 5;
+    let outcome = application.run_until(all).ended_well();
     assert_eq!(outcome.application()["state"], "DEGRADED");
     assert_eq!(
         outcome.states("diary"),
@@ -102,8 +85,9 @@ fn after_faults() {
 #[test]
 fn a_signal_from_outside_ends_the_container() {
     let application = Application::new().with(&Member::new("diary", "diary").period(1));
-    let finished = interrupted(&application, &[], "onExecute", Signal::SEGV);
-    assert_eq!(finished.code, None, "{finished}");
+    let runs = |events: &str| events.contains("onExecute");
+    let outcome = application.interrupt_when(&[], Signal::SEGV, runs);
+    assert_eq!(outcome.finished().code, None, "{}", outcome.finished());
 }
 
 #[test]
@@ -114,7 +98,7 @@ fn wrong_arguments_are_explained() {
         ["walk", "application.xml", "--for", "1s"],
     ] {
         let mut command = Command::new(artifacts().join("steadfast"));
-        let finished = Watched::spawn(command.args(arguments)).wait(STOP_LIMIT);
+        let finished = Watched::spawn(command.args(arguments)).wait(REFUSAL_LIMIT);
         assert_eq!(finished.code, Some(2), "{finished}");
         assert!(finished.stderr.contains("error"), "{finished}");
     }

@@ -5,158 +5,23 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
+use rustix::process::Signal;
 use tempfile::TempDir;
 
 use crate::build::artifacts;
+use crate::member::Member;
 use crate::outcome::Outcome;
-use crate::watchdog::Watched;
+use crate::watchdog::{Finished, Watched, until};
 
 /// A run takes well under a second of machine time; a busy machine gets a hundred times that.
 const RUN_LIMIT: Duration = Duration::from_secs(100);
 
-/// A component instance with a profile of its own.
-#[derive(Debug, Clone)]
-pub struct Member {
-    instance: String,
-    library: String,
-    kind: String,
-    period_ms: u64,
-    priority: u8,
-    own_properties: String,
-    properties: String,
-    ports: String,
-    queue: String,
-}
+/// The container promises to stop within three seconds; a busy machine gets more.
+const STOP_LIMIT: Duration = Duration::from_secs(30);
 
-impl Member {
-    /// An instance of a component of the tests, with its ports; runs every 10 ms.
-    pub fn new(instance: &str, library: &str) -> Self {
-        Self {
-            instance: instance.to_owned(),
-            library: library.to_owned(),
-            kind: "periodic".to_owned(),
-            period_ms: 10,
-            priority: 0,
-            own_properties: String::new(),
-            properties: String::new(),
-            ports: ports(library),
-            queue: "<queueing_policy>FIFO</queueing_policy><queue_size>1000</queue_size>"
-                .to_owned(),
-        }
-    }
-
-    /// `execution_semantics/type`.
-    #[must_use]
-    pub fn kind(mut self, kind: &str) -> Self {
-        kind.clone_into(&mut self.kind);
-        self
-    }
-
-    /// Period in milliseconds.
-    #[must_use]
-    pub fn period(mut self, milliseconds: u64) -> Self {
-        self.period_ms = milliseconds;
-        self
-    }
-
-    /// Priority.
-    #[must_use]
-    pub fn priority(mut self, priority: u8) -> Self {
-        self.priority = priority;
-        self
-    }
-
-    /// A property in the component's profile.
-    #[must_use]
-    pub fn property(mut self, name: &str, value: &str) -> Self {
-        self.properties += &format!("<property name='{name}'>{value}</property>");
-        self
-    }
-
-    /// A property that the application gives this instance.
-    #[must_use]
-    pub fn own_property(mut self, name: &str, value: &str) -> Self {
-        self.own_properties += &format!("<property name='{name}'>{value}</property>");
-        self
-    }
-
-    /// Other ports than the library has.
-    #[must_use]
-    pub fn ports(mut self, ports: &str) -> Self {
-        ports.clone_into(&mut self.ports);
-        self
-    }
-
-    /// What data inputs keep; without it, more than arrives in any test.
-    #[must_use]
-    pub fn queue(mut self, policy: &str, size: usize) -> Self {
-        self.queue =
-            format!("<queueing_policy>{policy}</queueing_policy><queue_size>{size}</queue_size>");
-        self
-    }
-
-    fn profile(&self) -> String {
-        let input = "<usage>input</usage>";
-        format!(
-            "<component_profile><name>{}</name>\n\
-             <execution_environment><library_name>{}</library_name></execution_environment>\n\
-             <execution_semantics><type>{}</type><period>{}</period><priority>{}</priority>\
-             </execution_semantics>\n<properties>{}</properties>\n<ports>{}</ports>\n\
-             </component_profile>",
-            self.instance,
-            self.library,
-            self.kind,
-            self.period_ms,
-            self.priority,
-            self.properties,
-            self.ports.replace(input, &format!("{input}{}", self.queue)),
-        )
-    }
-
-    fn subcomponent(&self) -> String {
-        format!(
-            "<subcomponent><name>{0}</name><reference>{0}.xml</reference>\
-             <properties>{1}</properties></subcomponent>",
-            self.instance, self.own_properties
-        )
-    }
-}
-
-/// Ports of the libraries of the tests, as profiles declare them.
-fn ports(library: &str) -> String {
-    let data = |name: &str, usage: &str| {
-        format!(
-            "<data_port><name>{name}</name><usage>{usage}</usage>\
-             <data_type>Sample</data_type></data_port>"
-        )
-    };
-    let event = |name: &str, usage: &str| {
-        format!(
-            "<event_port><name>{name}</name><usage>{usage}</usage>\
-             <data_type>Sample</data_type></event_port>"
-        )
-    };
-    let service = |usage: &str| {
-        format!(
-            "<service_port><name>arithmetic</name><usage>{usage}</usage>\
-             <type>Arithmetic</type></service_port>"
-        )
-    };
-    match library {
-        "counter" => data("output", "output"),
-        "recorder" => data("input", "input"),
-        "echo" => data("input", "input") + &data("output", "output"),
-        "low_pass" => data("raw", "input") + &data("smooth", "output"),
-        "herald" => event("news", "output"),
-        "listener" => event("news", "input"),
-        "adder" => service("provided"),
-        "asker" => service("required"),
-        "diary" | "no_component" | "old_abi" | "wrong_layout" | "crashes_when_loaded" => {
-            String::new()
-        }
-        _faulty => data("output", "output") + &event("heard", "input") + &service("provided"),
-    }
-}
+/// Files of a run, in the application's folder.
+const EVENTS: &str = "events.jsonl";
+const SUMMARY: &str = "summary.json";
 
 /// An application in a folder that is removed with it.
 pub struct Application {
@@ -189,7 +54,7 @@ impl Application {
     /// Adds a component.
     #[must_use]
     pub fn with(mut self, member: &Member) -> Self {
-        self.write(&format!("{}.xml", member.instance), member.profile());
+        self.write(&format!("{}.xml", member.instance()), member.profile());
         self.subcomponents += &member.subcomponent();
         self.subcomponents += "\n";
         self
@@ -266,6 +131,37 @@ impl Application {
         self.outcome(finished)
     }
 
+    /// Runs it by the machine's clock until `enough` holds of its event file, then interrupts it:
+    /// how long that takes is the machine's affair.
+    ///
+    /// # Panics
+    /// If it never holds.
+    pub fn run_until(&self, enough: impl Fn(&str) -> bool) -> Outcome {
+        self.interrupt_when(&[], Signal::INT, enough)
+    }
+
+    /// As [`Self::run_until`], with arguments and another signal.
+    ///
+    /// # Panics
+    /// If it never holds.
+    pub fn interrupt_when(
+        &self,
+        arguments: &[&str],
+        signal: Signal,
+        enough: impl Fn(&str) -> bool,
+    ) -> Outcome {
+        let child = self.start(arguments);
+        let events = self.folder().join(EVENTS);
+        let mut text = String::new();
+        let happened = until(RUN_LIMIT, || {
+            text = std::fs::read_to_string(&events).unwrap_or_default();
+            enough(&text)
+        });
+        assert!(happened, "what was waited for did not happen: {text}");
+        child.signal(signal);
+        self.outcome(child.wait(STOP_LIMIT))
+    }
+
     /// Starts a run; [`Self::outcome`] tells what became of it.
     pub fn start(&self, arguments: &[&str]) -> Watched {
         self.start_file(&self.profile(), arguments)
@@ -284,25 +180,20 @@ impl Application {
             .arg(file)
             .args(arguments)
             .arg("--events")
-            .arg(self.events_file())
+            .arg(self.folder().join(EVENTS))
             .arg("--summary")
-            .arg(self.folder().join("summary.json"))
+            .arg(self.folder().join(SUMMARY))
             .env_remove("STEADFAST_LIBRARY_PATH");
         Watched::spawn(&mut command)
     }
 
-    /// Where events are written.
-    pub fn events_file(&self) -> PathBuf {
-        self.folder().join("events.jsonl")
-    }
-
     /// What became of a run.
-    pub fn outcome(&self, finished: crate::watchdog::Finished) -> Outcome {
+    pub fn outcome(&self, finished: Finished) -> Outcome {
         let read = |name: &str| std::fs::read_to_string(self.folder().join(name));
         Outcome::new(
             finished,
-            read("events.jsonl").unwrap_or_default(),
-            read("summary.json").ok(),
+            read(EVENTS).unwrap_or_default(),
+            read(SUMMARY).ok(),
         )
     }
 }

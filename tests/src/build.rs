@@ -40,7 +40,7 @@ fn build() -> PathBuf {
         .arg("--target-dir")
         .arg(target)
         .args(["--package", "container"]);
-    for folder in ["tests/components", "tests/faulty-components"] {
+    for folder in ["components", "tests/components", "tests/faulty-components"] {
         for name in folders(&repository().join(folder)) {
             cargo.args(["--package", &name]);
         }

@@ -5,10 +5,12 @@
 
 mod application;
 mod build;
+mod member;
 mod outcome;
 mod watchdog;
 
-pub use application::{Application, Member};
+pub use application::Application;
 pub use build::{artifacts, c_component};
+pub use member::Member;
 pub use outcome::Outcome;
 pub use watchdog::{Finished, Watched, repository, until};

@@ -14,8 +14,10 @@ pub struct Outcome {
 
 impl Outcome {
     pub(crate) fn new(finished: Finished, raw_events: String, summary: Option<String>) -> Self {
+        // A container that was killed leaves half a line.
         let events = raw_events
-            .lines()
+            .split_inclusive('\n')
+            .filter(|line| line.ends_with('\n'))
             .map(|line| {
                 serde_json::from_str(line)
                     .unwrap_or_else(|error| panic!("not JSON: {line}: {error}\n{finished}"))
@@ -75,6 +77,11 @@ impl Outcome {
             self.raw_events
         );
         assert_eq!(self.summary, Value::Null, "nothing ran");
+    }
+
+    /// The summary as it is.
+    pub fn summary(&self) -> &Value {
+        &self.summary
     }
 
     /// Exit code and output.

@@ -4,6 +4,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, IsTerminal as _};
 use std::os::fd::{AsRawFd as _, IntoRawFd as _, OwnedFd};
 use std::os::unix::fs::OpenOptionsExt as _;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use nix::sys::termios::{self, BaudRate, SetArg};
@@ -21,7 +22,11 @@ pub struct Devices {
 
 /// An open device that has not been given away yet.
 #[derive(Debug)]
-pub struct OpenDevice(OwnedFd);
+pub struct OpenDevice {
+    descriptor: OwnedFd,
+    /// Where a simulated device stands among the machine's, if it does.
+    pub path: Option<PathBuf>,
+}
 
 /// Why a device does not open.
 #[derive(Debug, thiserror::Error)]
@@ -76,7 +81,7 @@ impl Devices {
             .ok_or_else(|| DeviceError::NoWorld(name.to_owned()))?;
         let opened = world.open(simulated);
         opened
-            .map(OpenDevice)
+            .map(|(descriptor, path)| OpenDevice { descriptor, path })
             .map_err(|error| DeviceError::Simulated {
                 name: name.to_owned(),
                 error,
@@ -87,12 +92,12 @@ impl Devices {
 impl OpenDevice {
     /// The descriptor's number; still owned here.
     pub fn number(&self) -> i32 {
-        self.0.as_raw_fd()
+        self.descriptor.as_raw_fd()
     }
 
     /// The component owns the descriptor from now on.
     pub fn give_away(self) {
-        let _now_theirs = self.0.into_raw_fd();
+        let _now_theirs = self.descriptor.into_raw_fd();
     }
 }
 
@@ -106,7 +111,10 @@ fn open_path(path: &str) -> io::Result<OpenDevice> {
     if file.is_terminal() {
         make_raw(&file)?;
     }
-    Ok(OpenDevice(file.into()))
+    Ok(OpenDevice {
+        descriptor: file.into(),
+        path: None,
+    })
 }
 
 fn make_raw(terminal: &File) -> io::Result<()> {

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::io;
 use std::os::fd::OwnedFd;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -74,12 +75,14 @@ impl World {
         draw_drive(&self.lock())
     }
 
-    /// Opens a device of the world.
+    /// Opens a device of the world; with its file, if it has one that a person can look at.
     ///
     /// # Errors
     /// If there is no such device, or it is unplugged.
-    pub fn open(&self, device: &str) -> io::Result<OwnedFd> {
-        self.lock().open(device, self.transport)
+    pub fn open(&self, device: &str) -> io::Result<(OwnedFd, Option<PathBuf>)> {
+        let mut simulation = self.lock();
+        let line = simulation.open(device, self.transport)?;
+        Ok((line, simulation.slave_path(device).map(PathBuf::from)))
     }
 
     /// The simulation itself, for tests and fault injection.

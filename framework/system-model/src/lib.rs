@@ -7,5 +7,6 @@ pub mod data_type;
 pub mod fault;
 pub mod life_cycle;
 pub mod profile;
+pub mod rules;
 pub mod specification;
 pub mod world;

@@ -90,6 +90,10 @@ impl Services {
         let name = self.text(name, "open_device")?;
         match self.environment.devices.open(&name) {
             Ok(device) => {
+                if let Some(path) = &device.path {
+                    let message = format!("device '{name}' is {}", path.display());
+                    self.record(Event::Notice { message });
+                }
                 let number = device.number();
                 if descriptor.copy_from(&number.to_ne_bytes()) {
                     device.give_away();
