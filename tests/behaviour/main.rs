@@ -11,6 +11,7 @@ mod execution;
 mod faults;
 mod life_cycle;
 mod ports;
+mod readme;
 mod reference_robot;
 mod services;
 mod stopping;
