@@ -169,21 +169,12 @@ fn forbids_unsafe(root: &Path) -> bool {
         .any(|line| line.starts_with("#![forbid(unsafe_code)]"))
 }
 
-/// Files with unsafe code, of a crate that does not forbid it. Comments do not count, nor the names
-/// of lints.
+/// Files with unsafe code, of a crate that does not forbid it.
 fn files_with_unsafe(package: &Package) -> Vec<String> {
-    let word = concat!("un", "safe");
     let mut found = Vec::new();
     for file in sources(&package.folder) {
         let content = std::fs::read_to_string(&file).expect("a source is readable");
-        let code = content
-            .lines()
-            .map(|line| line.split("//").next().unwrap_or_default());
-        let has_word = code.into_iter().any(|code| {
-            code.split(|letter: char| !letter.is_alphanumeric() && letter != '_')
-                .any(|token| token == word)
-        });
-        if has_word {
+        if content.lines().any(has_unsafe_code) {
             let place = file
                 .strip_prefix(repository())
                 .expect("inside the repository");
@@ -191,6 +182,18 @@ fn files_with_unsafe(package: &Package) -> Vec<String> {
         }
     }
     found
+}
+
+/// Comments, texts and names of lints do not count, nor do types of foreign functions: only to call
+/// one is unsafe.
+fn has_unsafe_code(line: &str) -> bool {
+    let code = line.split("//").next().unwrap_or_default();
+    let is_type = code.contains("extern \"C\" fn(");
+    let outside_texts: String = code.split('"').step_by(2).collect();
+    let mut tokens = outside_texts.split(|letter: char| !letter.is_alphanumeric() && letter != '_');
+    // A file that allows it to the files below it counts as well.
+    let allows = outside_texts.contains("allow(unsafe_code)");
+    allows || !is_type && tokens.any(|token| token == "unsafe")
 }
 
 /// Rust files of a crate, without those of crates in folders below it.
@@ -212,6 +215,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 #[test]
 fn unsafe_code_lives_where_the_list_says() {
     let listed = listed();
+    let mut could_forbid = Vec::new();
     let mut unlisted = Vec::new();
     let mut used = BTreeSet::new();
     for package in PACKAGES.iter() {
@@ -227,15 +231,17 @@ fn unsafe_code_lives_where_the_list_says() {
                 unlisted.push(file.clone());
             }
         }
-        assert!(
-            !files.is_empty(),
-            "'{}' has no unsafe code: each of its roots can say #![forbid(unsafe_code)]",
-            package.name
-        );
+        if files.is_empty() {
+            could_forbid.push(package.name.as_str());
+        }
     }
     assert_eq!(
         unlisted, [""; 0],
         "files with unsafe code that are not on the list"
+    );
+    assert_eq!(
+        could_forbid, [""; 0],
+        "crates without unsafe code say #![forbid(unsafe_code)] in each root"
     );
     let stale: Vec<&String> = listed.difference(&used).collect();
     assert_eq!(stale, [""; 0], "the list names files without unsafe code");
