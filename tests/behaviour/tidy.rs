@@ -192,7 +192,7 @@ fn has_unsafe_code(line: &str) -> bool {
     let outside_texts: String = code.split('"').step_by(2).collect();
     let mut tokens = outside_texts.split(|letter: char| !letter.is_alphanumeric() && letter != '_');
     // A file that allows it to the files below it counts as well.
-    let allows = outside_texts.contains("allow(unsafe_code)");
+    let allows = outside_texts.contains("allow(") && outside_texts.contains("unsafe_code");
     allows || !is_type && tokens.any(|token| token == "unsafe")
 }
 
