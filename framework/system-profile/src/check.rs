@@ -8,8 +8,9 @@ use serde_json::Value;
 use system_model::profile::{ComponentProfile, Profile};
 
 use crate::problem::Problem;
+use crate::readers::rules::RULES_ROOT;
 use crate::reading::reading;
-use crate::resolve::{Assembly, LoadOptions, LoadedFile, Sibling};
+use crate::resolve::{Assembly, LoadOptions, LoadedFile, Sibling, rules};
 
 /// What was found in one file.
 #[derive(Debug)]
@@ -33,10 +34,19 @@ pub fn check_file(path: &Path, options: &LoadOptions) -> Vec<FileReport> {
     let file = assembly.files.open(path);
     match &file.profile {
         Some(Profile::Application(profile)) => {
-            let _specification = assembly.application(&file, profile);
+            if let Some(specification) = assembly.application(&file, profile) {
+                rules::check_inline(&mut assembly, &specification);
+            }
         }
         Some(Profile::Composite(profile)) => assembly.composite(&file, profile),
-        Some(Profile::Component(profile)) => look_up_types(&mut assembly, &file, profile),
+        Some(Profile::Component(profile)) => {
+            look_up_types(&mut assembly, &file, profile);
+            rules::check_component(&mut assembly, &file, profile);
+        }
+        Some(Profile::System(_)) => rules::check_system(&mut assembly, &file),
+        None if file.document.root_name() == Some(RULES_ROOT) => {
+            rules::check_rule_file(&mut assembly, &file);
+        }
         _ => {}
     }
     let mut reports = vec![report(&file)];

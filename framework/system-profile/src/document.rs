@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 use system_model::profile::Located;
+use system_model::specification::Place;
 
 use crate::decode::{Decoded, decode};
 use crate::node::Node;
@@ -187,6 +188,24 @@ impl Document {
         let span = self.root.as_ref().map(|root| root.name_span.clone());
         self.log
             .error(span.unwrap_or_default(), message, Some(help.to_owned()));
+    }
+
+    /// Adds a problem with the word that begins at a place of this file.
+    pub(crate) fn report_at(
+        &self,
+        severity: Severity,
+        place: &Place,
+        message: impl Into<String>,
+        help: Option<String>,
+    ) {
+        let source = self.log.source();
+        let rest = source.span(place, usize::MAX);
+        let word = source.text()[rest.clone()]
+            .find(|sign: char| sign.is_whitespace() || "<>\"'=".contains(sign));
+        let length = word.unwrap_or(rest.len()).max(1).min(rest.len());
+        let span = rest.start..rest.start + length;
+        self.log
+            .add(Problem::new(severity, source, span, message, help));
     }
 
     /// Adds a problem with a text that was read from this file.

@@ -30,6 +30,6 @@ pub use node::Node;
 pub use problem::{MAX_PROBLEMS_PER_FILE, Problem, ProblemLog, Severity};
 pub use readers::{PROFILE_ROOTS, WorldOutcome, load_world, read_profile};
 pub use reading::reading;
-pub use resolve::{LoadOptions, LoadOutcome, load_application};
+pub use resolve::{LoadOptions, LoadOutcome, RulesOutcome, load_application, load_rules};
 pub use source::Source;
 pub use value::{Number, Value};

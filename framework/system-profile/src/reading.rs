@@ -33,6 +33,12 @@ pub fn reading(document: &Document) -> Value {
                     root.children_named("struct").map(structure).collect(),
                 );
             }
+            "fault_rules" => {
+                facts.insert("application".into(), json!(root.attribute("application")));
+                let components = root.children_named("component");
+                let names = components.map(|component| json!(component.attribute("name")));
+                facts.insert("components".into(), names.collect());
+            }
             _ => {}
         },
         None => {

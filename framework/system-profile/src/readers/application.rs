@@ -63,7 +63,7 @@ fn subcomponent(node: &Node<'_>) -> Subcomponent {
         node: header::text(node, "node_id").unwrap_or_default(),
         properties: header::properties(node),
     };
-    node.pass_over(&["id", "version", "type"]);
+    node.pass_over(&["id", "version", "type", "port"]);
     node.pass_over(&FAULT_TOLERANCE);
     node.finish();
     member

@@ -7,6 +7,7 @@ mod execution;
 mod header;
 mod ports;
 mod project;
+pub(crate) mod rules;
 mod service_type;
 mod system;
 mod world;
@@ -18,7 +19,7 @@ use crate::document::Document;
 pub use world::{WorldOutcome, load_world};
 
 /// The roots that [`read_profile`] understands.
-pub const PROFILE_ROOTS: [&str; 10] = [
+pub const PROFILE_ROOTS: [&str; 11] = [
     "component_profile",
     "package_profile",
     "application_profile",
@@ -29,12 +30,14 @@ pub const PROFILE_ROOTS: [&str; 10] = [
     "system_profile",
     "OPRoSProject",
     world::WORLD_ROOT,
+    rules::RULES_ROOT,
 ];
 
 /// Elements of the fault-tolerance dialect. They may stand inline in profiles, and are read
 /// together with the rule files, not here.
-pub(crate) const FAULT_TOLERANCE: [&str; 24] = [
+pub(crate) const FAULT_TOLERANCE: [&str; 27] = [
     "actuator",
+    "adapt",
     "backup",
     "confirm",
     "dependency",
@@ -42,7 +45,9 @@ pub(crate) const FAULT_TOLERANCE: [&str; 24] = [
     "evaluator",
     "exception",
     "fault",
+    "fault_event",
     "freshness",
+    "handle",
     "heartbeat",
     "isolation",
     "monitor",
@@ -62,12 +67,17 @@ pub(crate) const FAULT_TOLERANCE: [&str; 24] = [
 
 /// Makes a document typed. A profile with errors is still returned, as far as it could be
 /// understood; ask [`Document::has_errors`] before it is used. A world is looked through for its
-/// problems, but it is no profile; [`load_world`] returns it.
+/// problems, but it is no profile; [`load_world`] returns it. So is a rule file, whose rules mean
+/// something only together with their application; [`load_rules`](crate::load_rules) returns them.
 pub fn read_profile(document: &Document) -> Option<Profile> {
     let root = document.root(&PROFILE_ROOTS)?;
     if root.name() == world::WORLD_ROOT {
         let _looked_through = world::read(&root);
         root.finish();
+        return None;
+    }
+    if root.name() == rules::RULES_ROOT {
+        let _looked_through = rules::read(&root);
         return None;
     }
     let profile = match root.name() {

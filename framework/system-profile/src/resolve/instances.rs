@@ -9,6 +9,7 @@ use system_model::profile::{
 use system_model::specification::ComponentSpecification;
 
 use super::ports::Port;
+use super::rules::Site;
 use super::{Assembly, LoadedFile, Sibling};
 use crate::problem::Severity;
 use crate::suggest::{self, quoted};
@@ -118,6 +119,12 @@ impl Assembly<'_> {
             Profile::Component(profile) => {
                 self.components
                     .push(component(profile, subcomponent, name, node));
+                self.sites.push(Site {
+                    profile: Rc::clone(&referenced),
+                    holder: Rc::clone(file),
+                    subcomponent: subcomponent.clone(),
+                    prefix: prefix.to_owned(),
+                });
                 report_missing_library(&referenced, profile);
                 Some(Member::Component(self.components.len() - 1))
             }
@@ -172,6 +179,7 @@ impl Assembly<'_> {
         node: &str,
     ) -> Composite {
         let first = self.components.len();
+        self.expanded.push((Rc::clone(file), prefix.to_owned()));
         let scope = self.members(file, &profile.subcomponents, prefix, node);
         self.connect(&scope, &profile.connections);
         self.coordinate(&scope, &profile.coordination);
@@ -182,7 +190,8 @@ impl Assembly<'_> {
     }
 }
 
-fn component(
+/// The specification of an instance.
+pub(super) fn component(
     profile: &ComponentProfile,
     subcomponent: &Subcomponent,
     name: String,

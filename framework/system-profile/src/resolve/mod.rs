@@ -7,6 +7,7 @@ mod files;
 mod instances;
 mod ports;
 mod references;
+pub(crate) mod rules;
 
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -20,6 +21,8 @@ use connections::Wire;
 use coordination::Edge;
 pub(crate) use files::{Files, LoadedFile};
 pub(crate) use references::Sibling;
+use rules::Site;
+pub use rules::{RulesOutcome, load_rules};
 
 /// Where references are looked up, and how a dangling one is taken.
 #[derive(Debug, Clone)]
@@ -87,6 +90,10 @@ pub(crate) struct Assembly<'o> {
     open_composites: Vec<PathBuf>,
     instances: usize,
     dangling: bool,
+    /// Where each of the components comes from, in the same order.
+    sites: Vec<Site>,
+    /// The composites that were expanded, and what the names of their members begin with.
+    expanded: Vec<(Rc<LoadedFile>, String)>,
 }
 
 impl<'o> Assembly<'o> {
@@ -100,6 +107,8 @@ impl<'o> Assembly<'o> {
             open_composites: Vec::new(),
             instances: 0,
             dangling: false,
+            sites: Vec::new(),
+            expanded: Vec::new(),
         }
     }
 

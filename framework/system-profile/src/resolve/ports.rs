@@ -109,13 +109,18 @@ fn report_wrong_export(scope: &Scope, at: &Located<String>, port: &Port) {
 impl Port {
     /// Kind and direction in the words of profiles.
     pub(super) fn description(&self) -> &'static str {
-        match (self.kind, self.direction) {
-            (PortKind::Data, PortDirection::Input) => "an input data port",
-            (PortKind::Data, PortDirection::Output) => "an output data port",
-            (PortKind::Event, PortDirection::Input) => "an input event port",
-            (PortKind::Event, PortDirection::Output) => "an output event port",
-            (PortKind::Service, PortDirection::Input) => "a provided service port",
-            (PortKind::Service, PortDirection::Output) => "a required service port",
-        }
+        description(self.kind, self.direction)
+    }
+}
+
+/// Kind and direction of a port in the words of profiles.
+pub(super) fn description(kind: PortKind, direction: PortDirection) -> &'static str {
+    match (kind, direction) {
+        (PortKind::Data, PortDirection::Input) => "an input data port",
+        (PortKind::Data, PortDirection::Output) => "an output data port",
+        (PortKind::Event, PortDirection::Input) => "an input event port",
+        (PortKind::Event, PortDirection::Output) => "an output event port",
+        (PortKind::Service, PortDirection::Input) => "a provided service port",
+        (PortKind::Service, PortDirection::Output) => "a required service port",
     }
 }

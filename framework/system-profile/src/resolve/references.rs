@@ -72,7 +72,7 @@ impl Assembly<'_> {
                 self.options.dangling,
                 reference,
                 format!("there is no file `{}`", quoted(&reference.value)),
-                Some(help(&relative, &folders)),
+                Some(near_help(&relative, &folders)),
             );
         }
         found
@@ -95,7 +95,7 @@ impl Assembly<'_> {
 
 /// The reference as a path that stays inside whatever folder it is joined to. Profiles written on
 /// Windows separate folders with `\`.
-fn inside(reference: &str) -> Option<PathBuf> {
+pub(super) fn inside(reference: &str) -> Option<PathBuf> {
     let reference = reference.replace('\\', "/");
     let has_drive = reference.split('/').next()?.contains(':');
     let path = PathBuf::from(&reference);
@@ -105,7 +105,8 @@ fn inside(reference: &str) -> Option<PathBuf> {
     (stays && !has_drive && !reference.contains('\0')).then_some(path)
 }
 
-fn help(relative: &Path, folders: &[PathBuf]) -> String {
+/// The help line for a file that is not there: the nearest name, and where it was looked for.
+pub(super) fn near_help(relative: &Path, folders: &[PathBuf]) -> String {
     let looked = folders
         .iter()
         .map(|folder| folder.display().to_string())

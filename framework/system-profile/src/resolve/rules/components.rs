@@ -1,0 +1,80 @@
+//! The last step: ports, secondaries and limits of merged rules.
+
+use system_model::profile::Located;
+use system_model::rules::{ComponentRules, FaultRules};
+use system_model::specification::PortKind;
+
+use super::merge::{Merged, MergedComponent};
+use super::names::{Names, description};
+use super::{dependencies, limits, port_checks, secondaries};
+use crate::problem::Severity;
+use crate::resolve::Assembly;
+use crate::suggest::quoted;
+
+/// Makes the rules of the application, and reports what is wrong with the whole of them.
+pub(super) fn finish(assembly: &mut Assembly<'_>, names: &Names<'_>, merged: Merged) -> FaultRules {
+    dependencies::check(assembly, &merged.dependencies);
+    let components = merged.components.into_iter().enumerate();
+    let components: Vec<ComponentRules> = components
+        .map(|(index, component)| finish_component(assembly, names, index, component))
+        .collect();
+    let rules = FaultRules {
+        application: names.application.name.clone(),
+        fault: merged.fault,
+        heartbeat: merged.heartbeat,
+        components,
+        executors: merged.executors,
+        nodes: merged.nodes,
+        dependencies: merged.dependencies,
+        monitors: merged.monitors,
+        votings: merged.votings,
+    };
+    limits::check(assembly, names, &rules);
+    rules
+}
+
+fn finish_component(
+    assembly: &mut Assembly<'_>,
+    names: &Names<'_>,
+    index: usize,
+    merged: MergedComponent,
+) -> ComponentRules {
+    let mut rules = merged.rules;
+    rules.ports = port_checks::resolve(assembly, names, index, merged.ports);
+    check_fault_events(assembly, names, index, &rules);
+    rules.secondaries = secondaries::resolve(assembly, names, index, &merged.secondaries);
+    rules
+}
+
+fn check_fault_events(
+    assembly: &Assembly<'_>,
+    names: &Names<'_>,
+    index: usize,
+    rules: &ComponentRules,
+) {
+    for event in &rules.fault_events {
+        let Some(port) = &event.value.port else {
+            continue;
+        };
+        let name = Located {
+            value: port.clone(),
+            place: event.place.clone(),
+        };
+        let port = names.port(assembly, index, &name);
+        if let Some(port) = port.filter(|port| {
+            port.kind != PortKind::Event
+                || port.direction != system_model::specification::PortDirection::Output
+        }) {
+            assembly.report_at(
+                Severity::Error,
+                &event.place,
+                format!(
+                    "the port {} is {}, not an output event port",
+                    quoted(&port.name),
+                    description(port)
+                ),
+                "name an output event port, or no port for faults that are reported to the container",
+            );
+        }
+    }
+}
