@@ -73,6 +73,11 @@ impl Lane {
         })
     }
 
+    /// Its name, for people.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
     /// Names this lane when it enters components; the same before and after a loss.
     pub fn token(&self) -> u32 {
         self.token

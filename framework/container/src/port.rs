@@ -38,7 +38,10 @@ pub struct Receiver {
 #[derive(Debug, Default)]
 struct Counts {
     sent: AtomicU64,
-    dropped: AtomicU64,
+    /// By the writer, because the queue was full.
+    overwritten: AtomicU64,
+    /// By the reader, because its stack was full.
+    forgotten: AtomicU64,
 }
 
 enum SendBuffer {
@@ -118,7 +121,7 @@ impl Sender {
             }
             SendBuffer::Queue(writer) => {
                 if writer.publish() {
-                    increase(&self.counts.dropped);
+                    increase(&self.counts.overwritten);
                 }
             }
         }
@@ -147,7 +150,7 @@ impl Receiver {
             ReceiveBuffer::Lifo { arrivals, pile } => {
                 while let Some(datum) = arrivals.take() {
                     if pile.push(datum) {
-                        increase(&self.counts.dropped);
+                        increase(&self.counts.forgotten);
                     }
                 }
                 pile.pop()
@@ -162,7 +165,8 @@ impl Receiver {
 
     /// Data dropped because the reader did not keep up.
     pub fn dropped(&self) -> u64 {
-        self.counts.dropped.load(Ordering::Relaxed)
+        let counts = &self.counts;
+        counts.overwritten.load(Ordering::Relaxed) + counts.forgotten.load(Ordering::Relaxed)
     }
 }
 

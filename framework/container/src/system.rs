@@ -6,6 +6,7 @@ mod stages;
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crossbeam::channel::Sender;
@@ -23,6 +24,7 @@ use crate::summary::{ApplicationSummary, ComponentSummary, Summary, application_
 use crate::world::World;
 
 pub use agenda::Failure;
+use agenda::LeftBehind;
 use real_time::WorldThread;
 
 /// Loading devices, models and maps takes time; a component that is not up by then hangs.
@@ -78,10 +80,13 @@ pub enum StartError {
     Components(Vec<Failure>),
     /// Bringing it up took too long.
     #[error(
-        "the application did not come up within {} s\n  help: a component hangs in onInitialize or onStart; the last state event tells which came before it",
+        "component '{component}' did not return within {} s from onInitialize or onStart\n  help: see its properties and the devices it opens; nothing was started",
         BRING_UP_LIMIT.as_secs()
     )]
-    Hangs,
+    Hangs {
+        /// Instance name.
+        component: String,
+    },
     /// The event file cannot be written.
     #[error("{} cannot be written: {error}", .path.display())]
     Output {
@@ -110,7 +115,9 @@ pub struct System {
     components: Arc<[Arc<ComponentCell>]>,
     statuses: Vec<Arc<ComponentStatus>>,
     crew: Arc<Crew>,
-    lanes: Vec<Arc<Lane>>,
+    /// Each with the numbers of the components that it runs.
+    lanes: Vec<(Arc<Lane>, Vec<usize>)>,
+    left_behind: LeftBehind,
     writer: EventWriter,
 }
 
@@ -155,6 +162,7 @@ impl System {
             environment,
             world,
             world_thread: None,
+            left_behind: components.iter().map(|_| AtomicBool::new(false)).collect(),
             components: components.into(),
             statuses,
             crew: Crew::new()?,
@@ -166,7 +174,10 @@ impl System {
             let _log_error = system.close();
             return Err(error);
         }
-        system.launch(executors)?;
+        if let Err(error) = system.launch(executors) {
+            let _nothing_to_sum_up = system.stop("start_refused");
+            return Err(error);
+        }
         Ok(system)
     }
 
@@ -189,7 +200,7 @@ impl System {
     pub fn wait(&self, limit: Duration) -> Option<&'static str> {
         match self.options.clock {
             ClockKind::Simulated => {
-                let ended = self.lanes.iter().all(|lane| lane.wait(limit));
+                let ended = self.lanes.iter().all(|(lane, _)| lane.wait(limit));
                 ended.then(|| self.reason())
             }
             ClockKind::Real => {
@@ -209,18 +220,18 @@ impl System {
     pub fn stop(mut self, reason: &'static str) -> (Summary, Option<std::io::Error>) {
         let summary = self.summary(reason);
         let deadline = Instant::now() + STOP_LIMIT;
-        for lane in &self.lanes {
+        for (lane, _) in &self.lanes {
             lane.stop();
         }
-        let all_ended = self.lanes.iter().all(|lane| lane.wait(remaining(deadline)));
+        for (lane, members) in &self.lanes {
+            if !lane.wait(remaining(deadline)) {
+                self.leave_behind(lane, members);
+            }
+        }
         if let Some(world_thread) = self.world_thread.take() {
             world_thread.stop();
         }
-        if all_ended {
-            self.shut_down(remaining(deadline).max(STOP_LIMIT / 3));
-        } else {
-            self.notice("a component did not return: it is left behind, not stopped");
-        }
+        self.shut_down(remaining(deadline).max(STOP_LIMIT / 3));
         let events_lost = self.environment.events.lost();
         self.environment.events.record(
             self.environment.clock.now_ns(),
@@ -230,6 +241,18 @@ impl System {
             },
         );
         (summary, self.close().err())
+    }
+
+    /// A component of this lane hangs: a thread is inside it, and nobody may enter it or those
+    /// that share its lane.
+    fn leave_behind(&self, lane: &Lane, members: &[usize]) {
+        for member in members {
+            self.left_behind[*member].store(true, Ordering::Release);
+        }
+        self.notice(&format!(
+            "executor '{}' did not return: its components are left behind, not stopped",
+            lane.name()
+        ));
     }
 
     fn close(self) -> std::io::Result<()> {

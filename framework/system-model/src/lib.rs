@@ -3,6 +3,8 @@
 //! Nothing here reads files, clocks or devices. `system-profile` produces these values from XML,
 //! the container consumes them.
 
+#![forbid(unsafe_code)]
+
 pub mod data_type;
 pub mod fault;
 pub mod life_cycle;

@@ -1,6 +1,7 @@
 //! Life-cycle operations on all components of an application, one after the other.
 
 use std::fmt;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -65,9 +66,29 @@ pub(super) struct Agenda {
     components: Arc<[Arc<ComponentCell>]>,
     steps: Vec<Step>,
     last_first: bool,
-    /// Pairs of component and step that have begun.
-    begun: usize,
+    /// Components that a thread is inside of for ever: nobody may enter them.
+    left_behind: LeftBehind,
+    progress: Progress,
     failures: Failures,
+}
+
+/// Components that are left behind, by their number.
+pub(super) type LeftBehind = Arc<[AtomicBool]>;
+
+/// How far an agenda is, for the thread that waits.
+#[derive(Clone)]
+pub(super) struct Progress {
+    /// Pairs of component and step that have begun.
+    begun: Arc<AtomicUsize>,
+    /// The component of the last one.
+    component: Arc<AtomicUsize>,
+}
+
+impl Progress {
+    /// The component that is, or was last, being dealt with.
+    pub(super) fn component(&self) -> usize {
+        self.component.load(Ordering::Acquire)
+    }
 }
 
 impl Agenda {
@@ -75,18 +96,27 @@ impl Agenda {
         components: Arc<[Arc<ComponentCell>]>,
         steps: Vec<Step>,
         last_first: bool,
+        left_behind: LeftBehind,
     ) -> Self {
         Self {
             components,
             steps,
             last_first,
-            begun: 0,
+            left_behind,
+            progress: Progress {
+                begun: Arc::default(),
+                component: Arc::default(),
+            },
             failures: Failures::default(),
         }
     }
 
     pub(super) fn failures(&self) -> Failures {
         self.failures.clone()
+    }
+
+    pub(super) fn progress(&self) -> Progress {
+        self.progress.clone()
     }
 
     fn perform(&self, position: usize, lane: &Lane) {
@@ -96,6 +126,10 @@ impl Agenda {
         } else {
             index
         };
+        if self.left_behind[index].load(Ordering::Acquire) {
+            return;
+        }
+        self.progress.component.store(index, Ordering::Release);
         let Some(mut component) = self.components[index].enter(lane.token(), ENTER_LIMIT) else {
             return;
         };
@@ -121,9 +155,13 @@ impl Agenda {
 
 impl Work for Agenda {
     fn run(&mut self, lane: &Lane) {
-        while self.begun < self.components.len() * self.steps.len() {
-            self.begun += 1;
-            self.perform(self.begun - 1, lane);
+        let all = self.components.len() * self.steps.len();
+        while !lane.is_stopping() {
+            let position = self.progress.begun.fetch_add(1, Ordering::AcqRel);
+            if position >= all {
+                return;
+            }
+            self.perform(position, lane);
         }
     }
 

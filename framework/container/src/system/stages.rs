@@ -1,7 +1,8 @@
 //! The stages of an application's life: bringing up, launching the executors, shutting down.
 
 use std::sync::Arc;
-use std::time::Duration;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
 
 use system_model::life_cycle::Operation;
 use system_model::specification::SchedulingPolicy;
@@ -11,7 +12,7 @@ use super::real_time::{self, WorldThread};
 use super::{BRING_UP_LIMIT, ClockKind, STOP_LIMIT, StartError, System};
 use crate::event_log::Event;
 use crate::executor::Executor;
-use crate::lane::Lane;
+use crate::lane::{Lane, remaining};
 use crate::schedule::{RealTime, Simulated};
 
 impl System {
@@ -40,6 +41,7 @@ impl System {
                     return Err(StartError::Components(failures));
                 }
                 Err(error) => {
+                    self.shut_down(STOP_LIMIT);
                     self.abandon("start_refused");
                     return Err(error);
                 }
@@ -60,14 +62,22 @@ impl System {
         );
     }
 
-    /// Stops and destroys all, last first.
+    /// Stops and destroys all, last first. Each one that hangs takes the whole `limit`, so after
+    /// twice that the rest is left as it is.
     pub(super) fn shut_down(&self, limit: Duration) {
+        let deadline = Instant::now() + 2 * limit;
         for operation in [Operation::Stop, Operation::Destroy] {
-            // A component that fails while it is stopped is on record; nothing else can be done.
-            let result = self.perform(&[Step::Operate(operation)], true, limit);
-            if result.is_err() {
-                self.notice("stopping the components took too long: some are left behind");
-                return;
+            // A component that fails while it is stopped is on record; one that hangs is left
+            // behind, and the others still get their turn.
+            while let Err(StartError::Hangs { component }) =
+                self.perform(&[Step::Operate(operation)], true, limit)
+            {
+                self.notice(&format!(
+                    "component '{component}' did not return: it is left behind, not stopped"
+                ));
+                if remaining(deadline).is_zero() {
+                    return;
+                }
             }
         }
     }
@@ -80,14 +90,25 @@ impl System {
         last_first: bool,
         limit: Duration,
     ) -> Result<Vec<Failure>, StartError> {
-        let agenda = Agenda::new(Arc::clone(&self.components), steps.to_vec(), last_first);
-        let failures = agenda.failures();
+        let agenda = Agenda::new(
+            Arc::clone(&self.components),
+            steps.to_vec(),
+            last_first,
+            Arc::clone(&self.left_behind),
+        );
+        let (failures, progress) = (agenda.failures(), agenda.progress());
         let lane = Lane::new("life-cycle", Box::new(agenda));
         self.crew.start(&lane, || {})?;
-        if !lane.wait(limit) {
-            return Err(StartError::Hangs);
+        if lane.wait(limit) {
+            return Ok(failures.take());
         }
-        Ok(failures.take())
+        // Should it ever come back, its lane goes no further than the step it is in.
+        lane.stop();
+        let component = progress.component();
+        self.left_behind[component].store(true, Ordering::Release);
+        Err(StartError::Hangs {
+            component: self.statuses[component].name.clone(),
+        })
     }
 
     pub(super) fn launch(&mut self, executors: Vec<Executor>) -> Result<(), StartError> {
@@ -102,7 +123,8 @@ impl System {
                 );
                 let lane = Lane::new("simulated", Box::new(work));
                 self.crew.start(&lane, || {})?;
-                self.lanes.push(lane);
+                let members = (0..self.components.len()).collect();
+                self.lanes.push((lane, members));
             }
             ClockKind::Real => {
                 if executors
@@ -127,6 +149,11 @@ impl System {
     fn launch_executor(&mut self, executor: Executor) -> Result<(), StartError> {
         let prepare = real_time::preparation(&executor, Arc::clone(&self.environment));
         let name = executor.name.clone();
+        let members = executor
+            .members
+            .iter()
+            .map(|member| member.number as usize)
+            .collect();
         let work = RealTime::new(
             executor,
             Arc::clone(&self.components),
@@ -134,7 +161,7 @@ impl System {
         );
         let lane = Lane::new(name, Box::new(work));
         self.crew.start(&lane, prepare)?;
-        self.lanes.push(lane);
+        self.lanes.push((lane, members));
         Ok(())
     }
 
