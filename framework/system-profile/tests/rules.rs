@@ -583,9 +583,29 @@ fn dependencies_of_a_system_file() {
     assert_eq!(
         project.check(&path),
         [
-            "2: a circular dependency: patrol needs mapping needs patrol",
+            "3: a circular dependency: mapping needs patrol needs mapping",
             "4: there is no application `patrl`",
         ]
+    );
+}
+
+#[test]
+fn inline_rules_of_the_application() {
+    let project = Project::new();
+    project.application(
+        "<fault><retry_max>7</retry_max><severity>global</severity></fault>\
+         <dependency><name>motor</name><reference>avoidance</reference></dependency>",
+    );
+    let rules = project.load(&[]).sound();
+    assert_eq!(rules.fault.unwrap().value.retry_max, 7);
+    assert_eq!(rules.dependencies[0].value.need, 1);
+    // A circle that is closed only by the rule file.
+    let closing = "<dependency><name>avoidance</name><reference>motor</reference></dependency>";
+    let text = format!("<fault_rules application='patrol'>{closing}</fault_rules>");
+    let path = project.write("rules/patrol.xml", &text);
+    assert_eq!(
+        project.check(&path),
+        ["1: a circular dependency: avoidance needs motor needs avoidance"]
     );
 }
 

@@ -68,7 +68,7 @@ pub struct DependencyRule {
     pub dependent: Provider,
     /// On whom.
     pub providers: Vec<Provider>,
-    /// So many of the providers must be healthy, at least 1.
+    /// So many of the providers must be healthy, at least 1; where nothing is said, all of them.
     pub need: usize,
     /// What becomes of the dependent otherwise.
     pub severity: DependencySeverity,

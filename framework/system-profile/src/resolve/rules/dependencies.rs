@@ -58,23 +58,29 @@ pub(super) fn resolve(
     })
 }
 
-/// One step of a circle: an entity, and the dependency by which it needs the next one.
-type Step<'d> = (&'d Provider, &'d Provider, &'d Located<DependencyRule>);
+/// One step of a circle: an entity, the next one that it needs, and the number of the dependency
+/// that says so.
+type Step<'d> = (&'d Provider, &'d Provider, usize);
 
 /// Reports who would, through others, need itself.
 pub(super) fn check(assembly: &Assembly<'_>, dependencies: &[Located<DependencyRule>]) {
     let mut steps: Vec<Step<'_>> = dependencies
         .iter()
-        .flat_map(|rule| {
+        .enumerate()
+        .flat_map(|(number, rule)| {
             let providers = rule.value.providers.iter();
-            providers.map(move |provider| (&rule.value.dependent, provider, rule))
+            providers.map(move |provider| (&rule.value.dependent, provider, number))
         })
         .collect();
     for _ in 0..MAX_CIRCLES {
-        let Some(circle) = find_circle(&steps) else {
+        let Some(mut circle) = find_circle(&steps) else {
             return;
         };
-        report(assembly, &circle);
+        // The youngest dependency closes it: one of a rule file, before an inline one.
+        let numbers = circle.iter().map(|step| step.2).enumerate();
+        let youngest = numbers.max_by_key(|(_, number)| *number);
+        circle.rotate_left(youngest.map_or(0, |(position, _)| position));
+        report(assembly, &circle, dependencies);
         let of_circle: Vec<_> = circle
             .iter()
             .map(|step| (&step.0.entity, &step.1.entity))
@@ -113,8 +119,8 @@ fn find_circle<'d>(all: &[Step<'d>]) -> Option<Vec<Step<'d>>> {
     }
 }
 
-fn report(assembly: &Assembly<'_>, circle: &[Step<'_>]) {
-    let Some((_, _, rule)) = circle.first() else {
+fn report(assembly: &Assembly<'_>, circle: &[Step<'_>], dependencies: &[Located<DependencyRule>]) {
+    let Some((_, _, number)) = circle.first() else {
         return;
     };
     let names: Vec<String> = circle
@@ -124,7 +130,7 @@ fn report(assembly: &Assembly<'_>, circle: &[Step<'_>]) {
         .collect();
     assembly.report_at(
         Severity::Error,
-        &rule.place,
+        &dependencies[*number].place,
         format!("a circular dependency: {}", names.join(" needs ")),
         "when one stops all would stop, and none could be the cause; remove one of these",
     );

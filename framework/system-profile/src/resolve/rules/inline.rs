@@ -4,6 +4,7 @@ use std::rc::Rc;
 
 use system_model::profile::{Located, Profile};
 use system_model::rules::PortChecks;
+use system_model::specification::ApplicationSpecification;
 
 use super::Site;
 use crate::node::Node;
@@ -18,7 +19,10 @@ const PORTS: [&str; 3] = ["data_port", "event_port", "service_port"];
 
 /// All inline rules of an application: of its component profiles, then of the subcomponents, which
 /// are the integrator's and win.
-pub(super) fn read(assembly: &Assembly<'_>) -> DeclaredRules {
+pub(super) fn read(
+    assembly: &Assembly<'_>,
+    application: &ApplicationSpecification,
+) -> DeclaredRules {
     let mut rules = DeclaredRules::default();
     for site in &assembly.sites {
         let name = instance_name(site);
@@ -31,7 +35,8 @@ pub(super) fn read(assembly: &Assembly<'_>) -> DeclaredRules {
             rules.take(component);
         }
     }
-    if let Some(file) = assembly.files.in_order().first()
+    let mut files = assembly.files.in_order().iter();
+    if let Some(file) = files.find(|file| file.document.path() == application.file)
         && let (Some(Profile::Application(_)), Some(root)) =
             (&file.profile, file.document.root(&PROFILE_ROOTS))
     {

@@ -116,18 +116,21 @@ fn gather(
             report_foreign(assembly, &name, &application);
         }
     }
-    for dependency in &all_dependencies {
-        let dependency = dependencies::resolve(assembly, names, dependency);
-        combine.dependencies(&mut merged.dependencies, dependency.into_iter().collect());
-    }
-    for monitor in declared.monitors {
-        let monitor = monitors::process_model(assembly, names, monitor);
-        combine.monitors(&mut merged.monitors, monitor.into_iter().collect());
-    }
-    for voting in declared.votings {
-        let voting = monitors::voting(assembly, names, voting);
-        combine.votings(&mut merged.votings, voting.into_iter().collect());
-    }
+    let dependencies = all_dependencies.iter();
+    let dependencies = dependencies
+        .filter_map(|dependency| dependencies::resolve(assembly, names, dependency))
+        .collect();
+    combine.dependencies(&mut merged.dependencies, dependencies);
+    let monitors = declared.monitors.into_iter();
+    let monitors = monitors
+        .filter_map(|monitor| monitors::process_model(assembly, names, monitor))
+        .collect();
+    combine.monitors(&mut merged.monitors, monitors);
+    let votings = declared.votings.into_iter();
+    let votings = votings
+        .filter_map(|voting| monitors::voting(assembly, names, voting))
+        .collect();
+    combine.votings(&mut merged.votings, votings);
     merged
 }
 

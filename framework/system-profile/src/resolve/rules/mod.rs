@@ -61,6 +61,10 @@ pub struct RulesOutcome {
 /// `rule_files`, which win over them. A file of the list is a rule file (`fault_rules`) or a system
 /// file (`system_config`) with its `dependency` elements.
 ///
+/// What can be known without loading a library is checked here. Three things cannot: whether a data
+/// type has the field that a rule names, whether a component with a `backup` registers any memory,
+/// and whether the model of a `process_model` is there.
+///
 /// Secondaries are looked up beside the rule file, where the application's own components are, and
 /// in the search paths.
 ///
@@ -108,7 +112,7 @@ fn resolve(
     application: &ApplicationSpecification,
     files: &[Rc<LoadedFile>],
 ) -> FaultRules {
-    let inline = inline::read(assembly);
+    let inline = inline::read(assembly, application);
     let mut declared: Vec<DeclaredRules> = Vec::new();
     let mut seen: Vec<&Rc<LoadedFile>> = Vec::new();
     for file in files {

@@ -1,5 +1,9 @@
 //! Two sets of rules made one, kind by kind.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::hash::Hash;
+
 use system_model::profile::Located;
 use system_model::rules::{
     ComponentRules, DependencyRule, ExecutorRules, HeartbeatRule, MonitorRule, PortChecks,
@@ -241,7 +245,7 @@ impl<'a> Combine<'a> {
     }
 
     /// A rule of which there is one for each key.
-    fn list<T: PartialEq, K: PartialEq>(
+    fn list<T: PartialEq, K: Hash + Eq>(
         &self,
         what: &str,
         older: &mut Vec<Located<T>>,
@@ -259,7 +263,7 @@ impl<'a> Combine<'a> {
         );
     }
 
-    fn keyed<T, K: PartialEq>(
+    fn keyed<T, K: Hash + Eq>(
         &self,
         what: &str,
         older: &mut Vec<T>,
@@ -268,16 +272,26 @@ impl<'a> Combine<'a> {
         place: impl Fn(&T) -> &Place,
         same: impl Fn(&T, &T) -> bool,
     ) {
+        let known = older.iter().enumerate();
+        let mut positions: HashMap<K, usize> = known
+            .map(|(position, rule)| (key(rule), position))
+            .collect();
         for rule in newer {
-            let own = key(&rule);
-            match older.iter_mut().find(|other| key(other) == own) {
-                Some(first) if self.mode == Mode::Conflict => {
-                    if !same(first, &rule) {
-                        self.report(&format!("<{what}>"), place(first), place(&rule));
+            match positions.entry(key(&rule)) {
+                Entry::Vacant(entry) => {
+                    entry.insert(older.len());
+                    older.push(rule);
+                }
+                Entry::Occupied(entry) => {
+                    let first = &mut older[*entry.get()];
+                    match self.mode {
+                        Mode::Override => *first = rule,
+                        Mode::Conflict if same(first, &rule) => {}
+                        Mode::Conflict => {
+                            self.report(&format!("<{what}>"), place(first), place(&rule));
+                        }
                     }
                 }
-                Some(first) => *first = rule,
-                None => older.push(rule),
             }
         }
     }
