@@ -56,6 +56,11 @@ fn although_a_component_hangs() {
             .run_until(|events| events.contains("onExecute"))
             .ended_well();
         assert!(outcome.raw_events().contains("left behind"), "{callback}");
+        assert_eq!(
+            outcome.states("diary"),
+            ["READY", "ACTIVE", "INACTIVE", "DESTROYED"],
+            "{callback}: the others stop in order"
+        );
     }
 }
 
