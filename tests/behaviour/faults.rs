@@ -226,3 +226,31 @@ fn a_panic_tells_its_text_and_place() {
     assert_eq!(fault["t_ns"], 0);
     assert_eq!(fault["incarnation"], 1);
 }
+
+/// A thread that the component made itself fails, in the component's code or below it in the C
+/// library: the thread stops, the component is in ERROR, the rest goes on.
+#[test]
+fn in_a_thread_of_the_component() {
+    for (misbehaviour, kind) in [
+        ("crashes_in_thread", "segfault"),
+        ("aborts_in_thread", "abort"),
+    ] {
+        for execution in ["periodic", "aperiodic"] {
+            let faulty = Member::new("faulty", misbehaviour)
+                .kind(execution)
+                .property("callback", "onEvent")
+                .property("at_cycle", "1");
+            let application = healthy()
+                .with(&faulty)
+                .with(&Member::new("herald", "herald"))
+                .connect("event", "herald.news", "faulty.heard");
+            let outcome = application
+                .run_until(|events| events.contains("\"event\":\"fault\""))
+                .ended_well();
+            let expected = (kind.to_owned(), "a thread of its own".to_owned());
+            assert_eq!(outcome.faults("faulty"), [expected], "{misbehaviour}");
+            assert_eq!(outcome.component("faulty")["state"], "ERROR");
+            assert_eq!(outcome.component("recorder")["state"], "ACTIVE");
+        }
+    }
+}

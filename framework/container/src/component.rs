@@ -152,6 +152,7 @@ impl Component {
     pub fn deliver(&mut self, now_ns: u64, loss: &Loss) -> bool {
         let mut any = false;
         self.services.set_cycle_time(now_ns);
+        self.look_for_stray_fault();
         for inbox in 0..self.services.inboxes() {
             while let Some((port, method, message)) = self.services.take_message(inbox) {
                 any = true;
@@ -196,6 +197,17 @@ impl Component {
                 self.enter_state(LifeCycleState::Error);
                 Status::INTERNAL_FAULT
             }
+        }
+    }
+
+    /// Whether a thread that the component made itself has met a fault since the last look.
+    #[inline]
+    pub fn look_for_stray_fault(&mut self) {
+        if let Some(trap) = self.guarded.take_stray_fault() {
+            let mut fault = trap_fault(&trap, "a thread of its own", false);
+            fault.message.push_str(": that thread was stopped");
+            self.record(fault);
+            self.enter_state(LifeCycleState::Error);
         }
     }
 

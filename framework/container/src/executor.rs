@@ -93,6 +93,15 @@ impl Executor {
         self.cycles += 1;
     }
 
+    /// Looks after components while nothing is due.
+    pub fn look_after(&self, lane: &Lane) {
+        for member in &self.members {
+            if let Some(mut component) = member.component.enter(lane.token(), Duration::ZERO) {
+                component.look_for_stray_fault();
+            }
+        }
+    }
+
     /// Counts an overrun with every component that runs.
     pub fn overran(&self, lane: &Lane) {
         for member in &self.members {

@@ -16,6 +16,7 @@ mod interpose;
 pub mod loss;
 mod registers;
 mod stack;
+mod stray;
 mod table;
 mod trap;
 
@@ -148,6 +149,7 @@ pub struct Guarded {
     /// Leaked when the instance is quarantined: threads of the component may still name it.
     frame: Box<Frame>,
     side: Box<HostSide>,
+    stray: &'static stray::Word,
 }
 
 // SAFETY: between callbacks the coroutine is suspended in `serve`, whose frame holds nothing that
@@ -187,7 +189,16 @@ impl Guarded {
             coroutine: Some(coroutine),
             frame,
             side,
+            stray: stray::claim(code),
         })
+    }
+
+    /// The fault that a thread of the component's own has met, once; the instance is quarantined.
+    #[inline]
+    pub fn take_stray_fault(&mut self) -> Option<Trap> {
+        let trap = self.stray.take()?;
+        self.quarantine();
+        Some(trap)
     }
 
     /// Gives the calling thread what the trap handler needs. Must be done once by every thread

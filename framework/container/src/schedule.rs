@@ -71,6 +71,9 @@ impl RealTime {
                 LONGEST_SLEEP
             };
             self.executor.wake.sleep(sleep.min(LONGEST_SLEEP));
+            if !periodic {
+                self.executor.look_after(lane);
+            }
         }
     }
 

@@ -16,6 +16,7 @@ use super::copy;
 use super::loss::Loss;
 use super::registers;
 use super::stack::ComponentStack;
+use super::stray;
 
 /// Size of the stack that the handler runs on: the signal frame with all vector registers takes
 /// about 4 KiB, the handler little more; the rest is for safety.
@@ -177,7 +178,13 @@ extern "C" fn handle(
                 unsafe { &*frame.loss }.publish_and_park(frame, trap);
             }
         }
-        _ => fail_container(signal, information),
+        _ if sent_by_others(information) => fail_container(signal, information),
+        _ => match stray::culprit(instruction_pointer, stack_pointer) {
+            Some(word) => {
+                word.leave_and_park(signal, address(signal, information), instruction_pointer);
+            }
+            None => fail_container(signal, information),
+        },
     }
 }
 
@@ -198,12 +205,7 @@ fn record(
     instruction_pointer: usize,
     stack_pointer: usize,
 ) -> Trap {
-    let address = if signal == libc::SIGABRT {
-        0
-    } else {
-        // SAFETY: the kernel fills the address for the synchronous signals.
-        unsafe { information.si_addr() as usize }
-    };
+    let address = address(signal, information);
     let overflow = matches!(signal, libc::SIGSEGV | libc::SIGBUS)
         && (ComponentStack::guard_contains(frame.limit, address)
             || ComponentStack::guard_contains(frame.limit, stack_pointer));
@@ -214,6 +216,14 @@ fn record(
         instruction_pointer,
         stack_overflow: overflow,
     }
+}
+
+fn address(signal: i32, information: &libc::siginfo_t) -> usize {
+    if signal == libc::SIGABRT {
+        return 0;
+    }
+    // SAFETY: the kernel fills the address for the synchronous signals.
+    unsafe { information.si_addr() as usize }
 }
 
 /// Makes the coroutine return `trap` when the handler returns.
