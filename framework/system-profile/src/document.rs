@@ -22,6 +22,9 @@ use crate::well_formed::Malformed;
 /// not spend its memory on a file that was named by mistake.
 pub const MAX_FILE_SIZE: u64 = 8 * 1024 * 1024;
 
+/// No more of a word than this is underlined.
+const MAX_WORD_LENGTH: usize = 100;
+
 /// One file: its text, its tree and the problems found in it.
 ///
 /// Reading never fails as a whole: what cannot be read is a document without a tree whose problems
@@ -198,8 +201,12 @@ impl Document {
         message: impl Into<String>,
         help: Option<String>,
     ) {
+        if !self.log.has_room_for(severity) {
+            self.log.count(severity);
+            return;
+        }
         let source = self.log.source();
-        let rest = source.span(place, usize::MAX);
+        let rest = source.span(place, MAX_WORD_LENGTH);
         let word = source.text()[rest.clone()]
             .find(|sign: char| sign.is_whitespace() || "<>\"'=".contains(sign));
         let length = word.unwrap_or(rest.len()).max(1).min(rest.len());

@@ -24,6 +24,9 @@ const UNITS: [(&str, f64); 7] = [
 
 const MILLISECOND_S: f64 = 1e-3;
 
+const DURATION_HELP: &str =
+    "write a number of milliseconds, or a number with its unit: 60, 10s, 500us, 2min";
+
 /// A setting of a rule: an attribute, or a child of the same name.
 pub(super) fn setting<'a>(node: &Node<'a>, name: &'static str) -> Option<Value<'a>> {
     setting_of(node, &[name])
@@ -78,9 +81,6 @@ pub(super) fn duration(value: &Value<'_>) -> Option<Duration> {
     }
     duration
 }
-
-const DURATION_HELP: &str =
-    "write a number of milliseconds, or a number with its unit: 60, 10s, 500us, 2min";
 
 /// A time that is longer than nothing.
 pub(super) fn positive_duration(value: &Value<'_>) -> Option<Duration> {

@@ -9,7 +9,7 @@ mod measure;
 mod monitor;
 
 use system_model::profile::Located;
-use system_model::rules::{ComponentRules, PortChecks};
+use system_model::rules::{ComponentRules, HeartbeatRule, PortChecks};
 
 use super::header::required_attribute;
 use crate::node::Node;
@@ -171,9 +171,7 @@ fn executor(node: &Node<'_>) -> DeclaredExecutor {
     executor
 }
 
-fn network_node(
-    node: &Node<'_>,
-) -> Option<(Located<String>, Located<system_model::rules::HeartbeatRule>)> {
+fn network_node(node: &Node<'_>) -> Option<(Located<String>, Located<HeartbeatRule>)> {
     let name = required_attribute(node, "name");
     let heartbeat = detection::heartbeat(node);
     node.finish();

@@ -2,7 +2,7 @@
 
 use system_model::profile::Located;
 use system_model::rules::{ComponentRules, FaultRules};
-use system_model::specification::PortKind;
+use system_model::specification::{PortDirection, PortKind};
 
 use super::merge::{Merged, MergedComponent};
 use super::names::{Names, description};
@@ -61,10 +61,9 @@ fn check_fault_events(
             place: event.place.clone(),
         };
         let port = names.port(assembly, index, &name);
-        if let Some(port) = port.filter(|port| {
-            port.kind != PortKind::Event
-                || port.direction != system_model::specification::PortDirection::Output
-        }) {
+        if let Some(port) = port
+            .filter(|port| port.kind != PortKind::Event || port.direction != PortDirection::Output)
+        {
             assembly.report_at(
                 Severity::Error,
                 &event.place,

@@ -1,5 +1,7 @@
 //! Who needs whom: names, redundancy, and circles.
 
+use std::collections::HashSet;
+
 use system_model::profile::Located;
 use system_model::rules::{DependencyRule, Entity, Provider};
 
@@ -94,8 +96,7 @@ pub(super) fn check(assembly: &Assembly<'_>, dependencies: &[Located<DependencyR
 fn find_circle<'d>(all: &[Step<'d>]) -> Option<Vec<Step<'d>>> {
     let mut steps = all.to_vec();
     loop {
-        let needing: std::collections::HashSet<&Entity> =
-            steps.iter().map(|step| &step.0.entity).collect();
+        let needing: HashSet<&Entity> = steps.iter().map(|step| &step.0.entity).collect();
         let before = steps.len();
         let leads_on: Vec<bool> = steps
             .iter()

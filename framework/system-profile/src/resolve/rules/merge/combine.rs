@@ -53,19 +53,16 @@ impl<'a> Combine<'a> {
     pub(super) fn component(&self, older: &mut MergedComponent, newer: MergedComponent) {
         self.budget(older, &newer.rules, newer.secondaries);
         self.rules(&mut older.rules, newer.rules);
+        let known = older.ports.iter().enumerate();
+        let mut positions: HashMap<String, usize> = known
+            .map(|(position, (name, _))| (name.value.clone(), position))
+            .collect();
         for (name, checks) in newer.ports {
-            match older
-                .ports
-                .iter_mut()
-                .find(|(other, _)| other.value == name.value)
-            {
-                Some((_, older)) => self.checks(older, checks),
-                None => {
-                    let mut own = PortChecks::default();
-                    self.checks(&mut own, checks);
-                    older.ports.push((name, own));
-                }
-            }
+            let position = *positions.entry(name.value.clone()).or_insert_with(|| {
+                older.ports.push((name, PortChecks::default()));
+                older.ports.len() - 1
+            });
+            self.checks(&mut older.ports[position].1, checks);
         }
     }
 
