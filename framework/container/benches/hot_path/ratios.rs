@@ -34,6 +34,12 @@ pub fn print() {
                 );
                 ratio(
                     &root,
+                    &format!("{what}: port / rtrb"),
+                    &name("port"),
+                    &name("rtrb"),
+                );
+                ratio(
+                    &root,
                     &format!("{what}: port / crossbeam"),
                     &name("port"),
                     &name("crossbeam"),

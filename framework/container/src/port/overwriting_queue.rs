@@ -1,156 +1,180 @@
 //! A bounded queue between one writer and one reader that drops the oldest when it is full, and in
 //! which neither side ever waits for the other.
 //!
-//! The queue holds indices of slots; the data stay where they are. The writer, finding the queue
-//! full, takes the oldest index out itself, by the same compare-and-swap with which the reader
-//! would have taken it, so exactly one of them gets it. (`rtrb` cannot drop the oldest; the queues
-//! of crossbeam can, but there a writer waits for a reader that was interrupted half-way, for ever
-//! if both run at real-time priority on one core.)
-#![allow(unsafe_code)] // slots are reached by index ownership, which the compiler cannot see
+//! The ring's cells hold numbers of slots; the data stay where they are. Putting an item in is one
+//! exchange: the writer's filled slot against whatever slot the cell holds, which is either an old
+//! item that nobody took (dropped by this very exchange) or one that the reader gave back. Taking
+//! an item out is the same exchange the other way round, and succeeds only if the writer did not
+//! come in between. So a slot belongs to the writer, to the reader, or to one cell, at any time.
+//!
+//! (`rtrb` cannot drop the oldest; the queues of crossbeam can, but there a writer waits for a
+//! reader that was interrupted half-way, for ever if both run at real-time priority on one core.)
+#![allow(unsafe_code)] // slots are reached by ownership of their numbers, unseen by the compiler
 
 use std::cell::UnsafeCell;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crossbeam::utils::CachePadded;
 
 /// The writing end.
-pub(super) struct Writer<Item> {
+pub struct Writer<Item> {
     shared: Arc<Shared<Item>>,
-    /// Indices that the reader gave back.
-    free: rtrb::Consumer<u32>,
     /// The slot that belongs to the writer now.
-    own: u32,
+    own: u64,
+    /// Items ever written.
     written: u64,
+    /// Where the next one goes: `written` modulo the number of places, without the division.
+    place: usize,
 }
 
 /// The reading end.
-pub(super) struct Reader<Item> {
+pub struct Reader<Item> {
     shared: Arc<Shared<Item>>,
-    free: rtrb::Producer<u32>,
     /// The slot that belongs to the reader: the item it took last.
-    own: Option<u32>,
+    own: u64,
+    /// Position of the item to take next, counted from 0 at the queue's start.
+    position: u64,
+    /// Where it is: `position` modulo the number of places.
+    place: usize,
 }
 
 struct Shared<Item> {
-    slots: Box<[UnsafeCell<Item>]>,
-    /// Ring of slot indices, its length a power of two: at least one place more than the capacity,
-    /// so that the place the reader looks at is not the one that the writer fills.
-    ring: Box<[AtomicU32]>,
-    capacity: u64,
-    /// Indices ever put in; written by the writer only.
-    written: AtomicU64,
-    /// Indices ever taken out, by either side.
-    taken: AtomicU64,
+    /// Each on cache lines of its own: the two sides work on neighbours at the same time.
+    slots: Box<[CachePadded<UnsafeCell<Item>>]>,
+    /// One cell for each place; see [`Cell`].
+    ring: Box<[AtomicU64]>,
 }
 
-// SAFETY: a slot is touched only by the side that owns its index. An index is owned by the writer
-// (`own`), by the reader (`own`), by the ring, or by the free list, and passes between them by
-// release stores and acquire loads.
+/// What a cell holds: a slot, and the position of the item in it counted from 1, or 0 if the item
+/// was taken.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Cell(u64);
+
+/// Bits of a cell that hold the slot: a queue has fewer than 65,534 places. The other 48 count
+/// items: at a million a second they last for nine years.
+const SLOT_BITS: u32 = 16;
+
+impl Cell {
+    fn full(slot: u64, position: u64) -> Self {
+        Self(((position + 1) << SLOT_BITS) | slot)
+    }
+
+    fn empty(slot: u64) -> Self {
+        Self(slot)
+    }
+
+    fn slot(self) -> u64 {
+        self.0 & ((1 << SLOT_BITS) - 1)
+    }
+
+    fn position(self) -> Option<u64> {
+        (self.0 >> SLOT_BITS).checked_sub(1)
+    }
+}
+
+/// Most places a queue can have.
+pub const MOST_PLACES: usize = (1 << SLOT_BITS) - 2;
+
+// SAFETY: a slot is touched only by the side that owns its number. Numbers change hands by the
+// exchanges of `publish` and `take`, which release what was written and acquire what is read.
 unsafe impl<Item: Send> Sync for Shared<Item> {}
 
-/// Makes a queue of `capacity` items, all slots filled with copies of `empty`.
-pub(super) fn queue<Item: Clone>(capacity: usize, empty: &Item) -> (Writer<Item>, Reader<Item>) {
+/// Makes a queue of `capacity` items (1 to [`MOST_PLACES`]), all slots filled with copies of
+/// `empty`.
+pub fn queue<Item: Clone>(capacity: usize, empty: &Item) -> (Writer<Item>, Reader<Item>) {
+    let capacity = capacity.clamp(1, MOST_PLACES);
     // One slot for each place, one that the writer fills, one that the reader looks at.
-    let slots = capacity + 2;
-    let count = u32::try_from(slots).unwrap_or(u32::MAX);
+    let slots = 0..capacity + 2;
     let shared = Arc::new(Shared {
-        slots: (0..slots).map(|_| UnsafeCell::new(empty.clone())).collect(),
-        ring: (0..(capacity + 1).next_power_of_two())
-            .map(|_| AtomicU32::new(0))
+        slots: slots
+            .map(|_| CachePadded::new(UnsafeCell::new(empty.clone())))
             .collect(),
-        capacity: capacity as u64,
-        written: AtomicU64::new(0),
-        taken: AtomicU64::new(0),
+        ring: (0..capacity as u64)
+            .map(|slot| AtomicU64::new(Cell::empty(slot).0))
+            .collect(),
     });
-    let (mut give_back, free) = rtrb::RingBuffer::new(slots);
-    for index in 1..count {
-        // Never full: it has a place for every slot.
-        let _fits = give_back.push(index);
-    }
     let writer = Writer {
         shared: Arc::clone(&shared),
-        free,
-        own: 0,
+        own: capacity as u64,
         written: 0,
+        place: 0,
     };
     let reader = Reader {
         shared,
-        free: give_back,
-        own: None,
+        own: capacity as u64 + 1,
+        position: 0,
+        place: 0,
     };
     (writer, reader)
 }
 
 impl<Item> Writer<Item> {
     /// The slot to fill next.
-    pub(super) fn slot(&mut self) -> &mut Item {
-        // SAFETY: the index is owned by the writer.
-        unsafe { &mut *self.shared.slots[self.own as usize].get() }
+    #[inline]
+    pub fn slot(&mut self) -> &mut Item {
+        // SAFETY: the number is the writer's own.
+        unsafe { &mut *self.shared.slot(self.own) }
     }
 
     /// Puts the filled slot into the queue; true if the oldest item was dropped for it.
-    pub(super) fn publish(&mut self) -> bool {
-        let evicted = self.evict_if_full();
-        let shared = &*self.shared;
-        shared
-            .place(self.written)
-            .store(self.own, Ordering::Relaxed);
+    #[inline]
+    pub fn publish(&mut self) -> bool {
+        let filled = Cell::full(self.own, self.written);
+        let cell = &self.shared.ring[self.place];
+        let before = Cell(cell.swap(filled.0, Ordering::AcqRel));
         self.written += 1;
-        shared.written.store(self.written, Ordering::Release);
-        let next = evicted.or_else(|| self.free.pop().ok());
-        // Never empty: of capacity + 2 slots the ring holds at most `capacity`, the reader one.
-        self.own = next.unwrap_or(self.own);
-        evicted.is_some()
-    }
-
-    fn evict_if_full(&self) -> Option<u32> {
-        let shared = &*self.shared;
-        let taken = shared.taken.load(Ordering::Acquire);
-        if self.written - taken < shared.capacity {
-            return None;
-        }
-        let oldest = shared.place(taken).load(Ordering::Relaxed);
-        // If it fails the reader has just taken it, and there is room.
-        shared
-            .taken
-            .compare_exchange(taken, taken + 1, Ordering::AcqRel, Ordering::Acquire)
-            .is_ok()
-            .then_some(oldest)
+        self.place = self.shared.after(self.place);
+        self.own = before.slot();
+        before.position().is_some()
     }
 }
 
 impl<Item> Reader<Item> {
     /// Takes the oldest item; it stays readable until the next call.
-    pub(super) fn take(&mut self) -> Option<&Item> {
-        if let Some(own) = self.own.take() {
-            // Never full: it has a place for every slot.
-            let _fits = self.free.push(own);
-        }
-        let shared = &*self.shared;
+    #[inline]
+    pub fn take(&mut self) -> Option<&Item> {
+        let capacity = self.shared.ring.len() as u64;
         loop {
-            let taken = shared.taken.load(Ordering::Acquire);
-            if taken == shared.written.load(Ordering::Acquire) {
-                return None;
+            let cell = &self.shared.ring[self.place];
+            let found = Cell(cell.load(Ordering::Acquire));
+            let position = found.position()?;
+            if position != self.position {
+                // The writer went round: the oldest item that is left is one round behind this.
+                self.position = position + 1 - capacity;
+                // The remainder is below the number of places, which is a usize.
+                self.place = (self.position % capacity) as usize;
+                continue;
             }
-            let index = shared.place(taken).load(Ordering::Relaxed);
-            // It fails only if the writer has dropped this item meanwhile: each round that is
-            // lost is a new item that was written.
-            let won = shared
-                .taken
-                .compare_exchange(taken, taken + 1, Ordering::AcqRel, Ordering::Acquire)
-                .is_ok();
-            if won {
-                self.own = Some(index);
-                // SAFETY: the index left the ring by our exchange: the reader owns it.
-                return Some(unsafe { &*shared.slots[index as usize].get() });
+            let given_back = Cell::empty(self.own);
+            let taken =
+                cell.compare_exchange(found.0, given_back.0, Ordering::AcqRel, Ordering::Relaxed);
+            // It fails only if the writer came in between: each round that is lost is a new item.
+            if taken.is_ok() {
+                self.own = found.slot();
+                self.position += 1;
+                self.place = self.shared.after(self.place);
+                // SAFETY: the number is the reader's own since the exchange.
+                return Some(unsafe { &*self.shared.slot(self.own) });
             }
         }
     }
 }
 
 impl<Item> Shared<Item> {
-    fn place(&self, position: u64) -> &AtomicU32 {
-        // Positions wrap at 2^64, and the length is a power of two: cutting bits off is exact.
-        &self.ring[position as usize & (self.ring.len() - 1)]
+    #[inline]
+    fn slot(&self, number: u64) -> *mut Item {
+        // Numbers are below 2^16.
+        self.slots[number as usize].get()
+    }
+
+    #[inline]
+    fn after(&self, place: usize) -> usize {
+        if place + 1 == self.ring.len() {
+            0
+        } else {
+            place + 1
+        }
     }
 }
 
@@ -162,7 +186,7 @@ mod tests {
     #[test]
     fn nothing_is_torn_repeated_or_reordered_under_a_flood() {
         const ITEMS: u64 = 200_000;
-        for capacity in [1, 2, 7] {
+        for capacity in [1, 2, 3, 7] {
             let (mut writer, mut reader) = queue(capacity, &[0u64; 16]);
             let flood = std::thread::spawn(move || {
                 let mut dropped = 0u64;
@@ -183,6 +207,33 @@ mod tests {
             }
             let dropped = flood.join().expect("the writer does not panic");
             assert_eq!(received + dropped, ITEMS);
+        }
+    }
+
+    /// Every interleaving of few puts and takes, one after the other, against a plain queue.
+    #[test]
+    fn every_order_of_puts_and_takes_is_that_of_a_plain_queue() {
+        const STEPS: u32 = 12;
+        for capacity in 1..=4 {
+            for order in 0..1u32 << STEPS {
+                let (mut writer, mut reader) = queue(capacity, &0u64);
+                let mut plain = std::collections::VecDeque::new();
+                for step in 0..STEPS {
+                    if order >> step & 1 == 0 {
+                        let number = u64::from(step) + 1;
+                        *writer.slot() = number;
+                        let dropped = plain.len() == capacity && plain.pop_front().is_some();
+                        plain.push_back(number);
+                        assert_eq!(writer.publish(), dropped, "{capacity} {order:b} {step}");
+                    } else {
+                        assert_eq!(
+                            reader.take().copied(),
+                            plain.pop_front(),
+                            "{capacity} {order:b} {step}"
+                        );
+                    }
+                }
+            }
         }
     }
 }
