@@ -157,17 +157,17 @@ impl Component {
             while let Some((port, method, message)) = self.services.take_message(inbox) {
                 any = true;
                 if self.is_active() {
-                    let size = message.bytes.len();
+                    let size = message.bytes().len();
                     let (callback, name) = match method {
                         None => (
-                            Callback::Event(port, message.bytes.as_ptr(), size),
+                            Callback::Event(port, message.bytes().as_ptr(), size),
                             "onEvent",
                         ),
                         Some(method) => (
                             Callback::Call(ServiceCall {
                                 port,
                                 method,
-                                request: message.bytes.as_ptr(),
+                                request: message.bytes().as_ptr(),
                                 request_size: size,
                                 reply: std::ptr::null_mut(),
                                 reply_size: 0,

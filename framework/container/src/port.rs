@@ -1,6 +1,7 @@
 //! Connections between ports: one buffer for each, so that fan-out is a loop in the writer and
 //! neither side ever waits for the other.
 
+mod datum;
 mod mailbox;
 pub mod overwriting_queue;
 
@@ -9,19 +10,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use system_model::specification::QueuePolicy;
 
+pub use datum::Datum;
 pub use mailbox::{MailReceiver, MailSender, Sent, mailbox};
 use overwriting_queue::{Reader, Writer};
-
-/// A datum on its way, with its origin.
-#[derive(Debug, Clone)]
-pub struct Datum {
-    /// When it was written, by the container's clock, in nanoseconds.
-    pub stamp_ns: u64,
-    /// Incarnation of the instance that wrote it.
-    pub incarnation: u32,
-    /// The bytes of its type.
-    pub bytes: Box<[u8]>,
-}
 
 /// The writing end of a connection.
 pub struct Sender {
@@ -56,11 +47,7 @@ enum ReceiveBuffer {
 
 /// Makes a connection for data of `size` bytes that keeps as much as the policy says.
 pub fn connection(policy: QueuePolicy, queue_size: usize, size: usize) -> (Sender, Receiver) {
-    let empty = Datum {
-        stamp_ns: 0,
-        incarnation: 0,
-        bytes: vec![0; size].into_boxed_slice(),
-    };
+    let empty = Datum::empty(size);
     let queue_size = queue_size.max(1);
     let counts = Arc::new(Counts::default());
     let (send, receive) = match policy {
@@ -108,11 +95,10 @@ impl Sender {
             SendBuffer::Last(input) => input.input_buffer_mut(),
             SendBuffer::Queue(writer) => writer.slot(),
         };
-        if !fill(&mut datum.bytes) {
+        if !fill(datum.bytes_mut()) {
             return false;
         }
-        datum.stamp_ns = stamp_ns;
-        datum.incarnation = incarnation;
+        datum.set_origin(stamp_ns, incarnation);
         match &mut self.buffer {
             SendBuffer::Last(input) => {
                 input.publish();
@@ -179,9 +165,7 @@ impl Pile {
             self.filled += 1;
         }
         let top = &mut self.slots[self.filled - 1];
-        top.stamp_ns = datum.stamp_ns;
-        top.incarnation = datum.incarnation;
-        top.bytes.copy_from_slice(&datum.bytes);
+        top.copy_from(datum);
         full
     }
 
@@ -210,7 +194,7 @@ mod tests {
     fn all(receiver: &mut Receiver) -> Vec<u8> {
         let mut found = Vec::new();
         while let Some(datum) = receiver.receive() {
-            found.push(datum.bytes[0]);
+            found.push(datum.bytes()[0]);
         }
         found
     }

@@ -135,7 +135,7 @@ fn port<const SIZE: usize>(
     let get = move |taken: &mut [u8; SIZE]| {
         receiver
             .receive()
-            .map(|datum| taken.copy_from_slice(&datum.bytes))
+            .map(|datum| taken.copy_from_slice(datum.bytes()))
             .is_some()
     };
     (put, get)

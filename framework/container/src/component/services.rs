@@ -206,7 +206,7 @@ impl Services {
         }
         match receiver.as_mut().and_then(Receiver::receive) {
             None => Status::NOTHING,
-            Some(datum) if data.copy_from(&datum.bytes) => Status::SUCCESS,
+            Some(datum) if data.copy_from(datum.bytes()) => Status::SUCCESS,
             Some(_) => self.bad_pointer("read"),
         }
     }

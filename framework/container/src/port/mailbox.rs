@@ -21,11 +21,7 @@ pub fn mailbox(capacity: usize, size: usize) -> (MailSender, MailReceiver) {
     let (fill, filled) = rtrb::RingBuffer::new(capacity);
     let (mut give_back, empty) = rtrb::RingBuffer::new(capacity);
     for _ in 0..capacity {
-        let message = Datum {
-            stamp_ns: 0,
-            incarnation: 0,
-            bytes: vec![0; size].into_boxed_slice(),
-        };
+        let message = Datum::empty(size);
         // Never full: it has a place for every message.
         let _fits = give_back.push(message);
     }
@@ -63,11 +59,10 @@ impl MailSender {
         let Ok(mut message) = self.empty.pop() else {
             return Sent::Full;
         };
-        let readable = fill(&mut message.bytes);
-        message.stamp_ns = stamp_ns;
+        let readable = fill(message.bytes_mut());
         // Incarnations count from 1: 0 marks a message that the receiver throws away, because its
         // buffer can only travel back through the receiver.
-        message.incarnation = if readable { incarnation } else { 0 };
+        message.set_origin(stamp_ns, if readable { incarnation } else { 0 });
         // Never full: there are as many messages as places.
         let _fits = self.filled.push(message);
         if readable {
@@ -83,7 +78,7 @@ impl MailReceiver {
     pub fn take(&mut self) -> Option<Datum> {
         loop {
             let message = self.filled.pop().ok()?;
-            if message.incarnation != 0 {
+            if message.incarnation() != 0 {
                 return Some(message);
             }
             self.give_back(message);
@@ -121,11 +116,11 @@ mod tests {
         assert_eq!(send(2), Sent::Queued);
         assert_eq!(send(3), Sent::Full);
         let first = receiver.take().expect("queued");
-        assert_eq!(first.bytes[0], 1);
+        assert_eq!(first.bytes()[0], 1);
         receiver.give_back(first);
         assert_eq!(send(9), Sent::Unreadable);
         let second = receiver.take().expect("queued");
-        assert_eq!(second.bytes[0], 2);
+        assert_eq!(second.bytes()[0], 2);
         receiver.give_back(second);
         assert!(
             receiver.take().is_none(),
