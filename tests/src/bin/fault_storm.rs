@@ -160,7 +160,7 @@ impl Instance {
         self.component.execute(0, &self.loss);
         let receiver = self.receiver.as_mut().expect("the counter has an output");
         let sent = receiver.receive().expect("it has sent something");
-        assert_eq!(sent.bytes[..8], number.to_ne_bytes());
+        assert_eq!(sent.bytes()[..8], number.to_ne_bytes());
     }
 }
 
