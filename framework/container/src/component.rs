@@ -147,15 +147,13 @@ impl Component {
         let _recorded = self.run_or_fail(Callback::Updated, "onUpdated", loss);
     }
 
-    /// Delivers events and queued calls that have arrived; true if there were any. To a component
-    /// that is not active nothing is delivered: what arrives meanwhile is thrown away.
-    pub fn deliver(&mut self, now_ns: u64, loss: &Loss) -> bool {
-        let mut any = false;
+    /// Delivers events and queued calls that have arrived. To a component that is not active
+    /// nothing is delivered: what arrives meanwhile is thrown away.
+    pub fn deliver(&mut self, now_ns: u64, loss: &Loss) {
         self.services.set_cycle_time(now_ns);
         self.look_for_stray_fault();
         for inbox in 0..self.services.inboxes() {
             while let Some((port, method, message)) = self.services.take_message(inbox) {
-                any = true;
                 if self.is_active() {
                     let size = message.bytes().len();
                     let (callback, name) = match method {
@@ -180,7 +178,6 @@ impl Component {
                 self.services.give_back(inbox, message);
             }
         }
-        any
     }
 
     /// Serves a blocking call of another component, on that component's thread.
@@ -191,7 +188,7 @@ impl Component {
         self.services.set_cycle_time(now_ns);
         match self.run(Callback::Call(call), "onCall", loss) {
             Ok(()) => Status::SUCCESS,
-            // The callee judged the request and said no: an answer, not a fault of the callee.
+            // The callee said no. That is on record, but the callee goes on.
             Err(fault) if fault.kind == FaultKind::ErrorReturn => self.services.last_status(),
             Err(_fault) => {
                 self.enter_state(LifeCycleState::Error);

@@ -1,10 +1,10 @@
 //! The guard: every component instance runs on a stack of its own, as a coroutine.
 //!
 //! The container resumes it with a call; a host service that the component asks for suspends back,
-//! so that container code runs on the container's stack (all but three, see `host`). A trap with the stack pointer inside a
-//! component's stack is that component's fault: the handler makes the coroutine return a record of
-//! it, and no frame of ours is skipped. The stack is then quarantined: never reused, never freed,
-//! like a coroutine that is never resumed.
+//! so that container code runs on the container's stack (all but three, see `host`). A trap with
+//! the stack pointer inside a component's stack is that component's fault: the handler makes the
+//! coroutine return a record of it, and no frame of ours is skipped. The stack is then quarantined:
+//! never reused, never freed, like a coroutine that is never resumed.
 //!
 //! Survives: traps, aborts, `exit`, stack overflow into the guard area, panics. Does not survive:
 //! memory that the component corrupted before it trapped; a lock of the C library that it held.
@@ -274,11 +274,6 @@ impl Guarded {
         if let Some(coroutine) = self.coroutine.take() {
             mem::forget(coroutine);
         }
-    }
-
-    /// Whether the component was constructed.
-    pub fn has_instance(&self) -> bool {
-        !self.side.instance().is_null()
     }
 }
 

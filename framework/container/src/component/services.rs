@@ -1,5 +1,5 @@
 //! What a component may ask of the container, answered: ports, properties, log, clock, memory,
-//! devices. Runs on the container's stack while the component is suspended.
+//! devices. `guard::host` says on which stack.
 
 mod calls;
 mod requests;

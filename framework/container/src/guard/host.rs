@@ -4,7 +4,7 @@
 //! stack. Reading, writing and the clock are answered at once, on the component's stack: they are
 //! asked several times a cycle, hold no lock, and touch only this component's ends of its
 //! connections, so that being cut off in the middle harms nobody else. (A switch there and back
-//! costs two mispredicted returns, 10 ns; the whole cycle of a component has a goal of 100 ns.)
+//! costs two mispredicted returns, more than the answer itself.)
 
 use std::cell::{Cell, UnsafeCell};
 use std::ptr;
@@ -46,7 +46,8 @@ pub enum Request {
 
 /// Answers what components ask; the answer is a status code, or the time for [`Request::Now`].
 pub trait HostServices {
-    /// Answers one request. Runs on the container's stack. (By reference: the fields were just
+    /// Answers one request: on the component's stack for reading, writing and the clock, on the
+    /// container's for all else. (By reference: the fields were just
     /// written one by one, and a copy would wait for all of them.)
     fn answer(&mut self, request: &Request) -> u64;
 }

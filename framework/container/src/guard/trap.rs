@@ -229,7 +229,7 @@ fn address(signal: i32, information: &libc::siginfo_t) -> usize {
 /// Makes the coroutine return `trap` when the handler returns.
 fn take_off(frame: &Frame, trap: Trap, context: &mut libc::ucontext_t) {
     // SAFETY: the stack pointer is inside this coroutine; the registers are set as demanded below.
-    // The component wrote to nothing of ours but through host calls, which run on our own stack.
+    // The interrupted instruction is the component's own, so no host call of ours is cut off.
     let registers = unsafe { frame.trap.setup_trap_handler(move || Ended::Trapped(trap)) };
     registers::redirect(context, &registers);
     // The component may have blocked signals; the kernel restores this mask on return.
