@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use component_abi::Status;
-use system_model::fault::{Fault, FaultKind};
+use system_model::fault::{Fault, FaultKind, SignalEvidence};
 use system_model::life_cycle::{LifeCycleState, Operation, Transition, transition};
 
 use crate::event_log::Event;
@@ -265,11 +265,13 @@ impl Component {
         let fault = match ending {
             Ending::Returned(status) => self.services.returned_fault(status, callback),
             Ending::Trapped(trap) => trap_fault(&trap, callback, false),
-            Ending::Left(Exit::Abort) => fault(FaultKind::Abort, callback, "abort()".to_owned()),
-            Ending::Left(Exit::Exit(code)) => {
-                fault(FaultKind::Exit, callback, format!("exit({code})"))
+            Ending::Left(Exit::Abort) => {
+                Fault::new(FaultKind::Abort, callback, "abort()".to_owned())
             }
-            Ending::Gone => fault(
+            Ending::Left(Exit::Exit(code)) => {
+                Fault::new(FaultKind::Exit, callback, format!("exit({code})"))
+            }
+            Ending::Gone => Fault::new(
                 FaultKind::ErrorReturn,
                 callback,
                 "called after it had ended".to_owned(),
@@ -329,31 +331,24 @@ fn callbacks(operation: Operation) -> &'static [(Callback, &'static str)] {
     }
 }
 
-fn fault(kind: FaultKind, callback: &'static str, message: String) -> Fault {
-    Fault {
-        kind,
-        callback,
-        message,
-        place: None,
-        thread_lost: false,
-    }
-}
-
 /// The fault that a trap stands for. Addresses that differ from run to run are left out unless
 /// they say something: a null dereference is near zero in every run.
 fn trap_fault(trap: &Trap, callback: &'static str, thread_lost: bool) -> Fault {
     /// The first page is never mapped: an address in it is a field of a null pointer.
     const NULL_PAGE: usize = 4096;
-    let (kind, signal) = match trap.signal {
-        _ if trap.stack_overflow => (FaultKind::StackOverflow, "the stack's guard area was hit"),
-        libc::SIGBUS => (FaultKind::BusError, "SIGBUS"),
-        libc::SIGFPE => (FaultKind::DivideByZero, "SIGFPE"),
-        libc::SIGILL => (FaultKind::IllegalInstruction, "SIGILL"),
-        libc::SIGTRAP => (FaultKind::IllegalInstruction, "SIGTRAP"),
-        libc::SIGABRT => (FaultKind::Abort, "SIGABRT"),
-        _ => (FaultKind::Segfault, "SIGSEGV"),
+    let kind = match trap.signal {
+        _ if trap.stack_overflow => FaultKind::StackOverflow,
+        libc::SIGBUS => FaultKind::BusError,
+        libc::SIGFPE => FaultKind::DivideByZero,
+        libc::SIGILL | libc::SIGTRAP => FaultKind::IllegalInstruction,
+        libc::SIGABRT => FaultKind::Abort,
+        _ => FaultKind::Segfault,
     };
-    let mut message = signal.to_owned();
+    let signal = signal_name(trap.signal);
+    let mut message = match kind {
+        FaultKind::StackOverflow => "the stack's guard area was hit".to_owned(),
+        _ => signal.to_owned(),
+    };
     if matches!(kind, FaultKind::Segfault) && trap.address < NULL_PAGE {
         message = format!("{signal} at address {:#x} (null pointer)", trap.address);
     }
@@ -361,10 +356,24 @@ fn trap_fault(trap: &Trap, callback: &'static str, thread_lost: bool) -> Fault {
         message.push_str(", outside the component's own code: its thread was set aside");
     }
     Fault {
-        kind,
-        callback,
-        message,
-        place: None,
         thread_lost,
+        signal: Some(SignalEvidence {
+            name: signal_name(trap.signal),
+            code: trap.code,
+            address: trap.address,
+            backtrace: Vec::new(),
+        }),
+        ..Fault::new(kind, callback, message)
+    }
+}
+
+fn signal_name(signal: i32) -> &'static str {
+    match signal {
+        libc::SIGBUS => "SIGBUS",
+        libc::SIGFPE => "SIGFPE",
+        libc::SIGILL => "SIGILL",
+        libc::SIGTRAP => "SIGTRAP",
+        libc::SIGABRT => "SIGABRT",
+        _ => "SIGSEGV",
     }
 }

@@ -27,6 +27,28 @@ pub enum FaultKind {
     BadPointer,
     /// The component itself reported a fault.
     Reported,
+    /// A callback did not return before its deadline.
+    Hang,
+    /// A value outside its interval, or not finite.
+    OutOfRange,
+    /// A datum of another size than its type has.
+    WrongSize,
+    /// An input got nothing new for too long.
+    Stale,
+    /// A value jumped.
+    RateOfChange,
+    /// A value stayed exactly the same for too long.
+    Stuck,
+    /// An executor did not finish its cycles within their period, too often.
+    Overrun,
+    /// No work was completed for too long.
+    HeartbeatMissed,
+    /// What the process does differs from what its model says.
+    ProcessModel,
+    /// A voter's source disagrees with the others.
+    VotingDissent,
+    /// A recovery did not succeed, or not in time.
+    RecoveryFailed,
 }
 
 impl FaultKind {
@@ -44,6 +66,17 @@ impl FaultKind {
             Self::ErrorReturn => "error_return",
             Self::BadPointer => "bad_pointer",
             Self::Reported => "reported",
+            Self::Hang => "hang",
+            Self::OutOfRange => "out_of_range",
+            Self::WrongSize => "wrong_size",
+            Self::Stale => "stale",
+            Self::RateOfChange => "rate_of_change",
+            Self::Stuck => "stuck",
+            Self::Overrun => "overrun",
+            Self::HeartbeatMissed => "heartbeat_missed",
+            Self::ProcessModel => "process_model",
+            Self::VotingDissent => "voting_dissent",
+            Self::RecoveryFailed => "recovery_failed",
         }
     }
 }
@@ -67,4 +100,37 @@ pub struct Fault {
     pub place: Option<(String, u32, u32)>,
     /// Whether the thread was lost with the component, because the fault hit in the C library.
     pub thread_lost: bool,
+    /// What the callback returned, for [`FaultKind::ErrorReturn`]; 0 else.
+    pub return_code: u32,
+    /// The signal and the address it was about, for a trap.
+    pub signal: Option<SignalEvidence>,
+}
+
+impl Fault {
+    /// A fault of which no more is known.
+    pub fn new(kind: FaultKind, callback: &'static str, message: String) -> Self {
+        Self {
+            kind,
+            callback,
+            message,
+            place: None,
+            thread_lost: false,
+            return_code: 0,
+            signal: None,
+        }
+    }
+}
+
+/// What the processor said of a trap.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SignalEvidence {
+    /// Name of the signal.
+    pub name: &'static str,
+    /// `si_code`.
+    pub code: i32,
+    /// `si_addr`: the address that could not be accessed, or the faulting instruction. It differs
+    /// from run to run.
+    pub address: usize,
+    /// Where in the component it was, innermost first, as far as its library tells.
+    pub backtrace: Vec<String>,
 }

@@ -156,13 +156,11 @@ impl Services {
     pub(super) fn returned_fault(&mut self, status: Status, callback: &'static str) -> Fault {
         self.last_status = status;
         if let Some(service) = self.bad_pointer.take() {
-            return Fault {
-                kind: FaultKind::BadPointer,
+            return Fault::new(
+                FaultKind::BadPointer,
                 callback,
-                message: format!("it passed memory to '{service}' that is not accessible"),
-                place: None,
-                thread_lost: false,
-            };
+                format!("it passed memory to '{service}' that is not accessible"),
+            );
         }
         let explanation = self.explanation.take().unwrap_or_default();
         let panicked = status == Status::PANICKED;
@@ -184,6 +182,8 @@ impl Services {
             },
             place: explanation.place,
             thread_lost: false,
+            return_code: if panicked { 0 } else { status.0 },
+            signal: None,
         }
     }
 

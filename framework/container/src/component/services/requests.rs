@@ -56,13 +56,12 @@ impl Services {
         message: ForeignText,
     ) -> Result<Status, Status> {
         let message = self.text(message, "report_fault")?;
-        let fault = Fault {
-            kind: FaultKind::Reported,
-            callback: self.callback,
-            message: format!("{message} ({code})"),
-            place: None,
-            thread_lost: false,
-        };
+        let mut fault = Fault::new(
+            FaultKind::Reported,
+            self.callback,
+            format!("{message} ({code})"),
+        );
+        fault.return_code = code.0;
         self.record(Event::fault(&self.name, self.incarnation, &fault));
         Ok(Status::SUCCESS)
     }
