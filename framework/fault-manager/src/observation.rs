@@ -1,0 +1,296 @@
+//! What the fault manager is told.
+
+use std::time::Duration;
+
+use serde::Serialize;
+use system_model::fault::FaultKind;
+use system_model::rules::Judgement;
+use system_model::specification::Place;
+
+use crate::plan::ActionId;
+use crate::verdict::FaultId;
+
+/// Names a detector; an index into the detectors of the fault manager.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct DetectorId(pub usize);
+
+/// Something that can raise symptoms, as a rule or a default has it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Detector {
+    /// The component that is to blame.
+    pub component: usize,
+    /// What it looks at.
+    pub kind: DetectorKind,
+    /// How its symptoms become a fault.
+    pub judgement: Judgement,
+    /// The rule; none for a default.
+    pub place: Option<Place>,
+}
+
+/// What a detector looks at. Indices count within the rules of the component.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum DetectorKind {
+    /// Runtime exceptions: traps, panics, exits, failures returned. One for each component; the
+    /// narrowest `exception` rule decides the severity of each.
+    Exception,
+    /// `watchdog`. One for each component.
+    Hang,
+    /// `overrun` of the component or of its executor.
+    Overrun,
+    /// `heartbeat` of the component, of its executor, its application or its node.
+    Heartbeat,
+    /// `validity`, by index in `ComponentRules::ports` and then in `PortChecks::validity`.
+    Validity {
+        /// Index of the port's rules.
+        port: usize,
+        /// Index of the rule.
+        rule: usize,
+    },
+    /// `freshness` of an input port, by index in `ComponentRules::ports`.
+    Freshness {
+        /// Index of the port's rules.
+        port: usize,
+    },
+    /// `rate_of_change`.
+    RateOfChange {
+        /// Index of the port's rules.
+        port: usize,
+        /// Index of the rule.
+        rule: usize,
+    },
+    /// `stuck`.
+    Stuck {
+        /// Index of the port's rules.
+        port: usize,
+        /// Index of the rule.
+        rule: usize,
+    },
+    /// `fault_event`, by index in `ComponentRules::fault_events`. A component without such a rule
+    /// has one for whatever it reports through its report service: `None`.
+    FaultEvent(Option<usize>),
+    /// `process_model`, by index in `FaultRules::monitors`; the component is that of its first
+    /// output.
+    ProcessModel {
+        /// Index of the monitor.
+        monitor: usize,
+    },
+    /// One source of a voter, by index in `FaultRules::votings` and in its sources.
+    Voting {
+        /// Index of the voter.
+        voting: usize,
+        /// Index of the source.
+        source: usize,
+    },
+}
+
+/// Something that was observed.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Observation {
+    /// All components have been started: rules that are not `armed="always"` begin to act.
+    Running,
+    /// A detector found something wrong.
+    Symptom(Box<Symptom>),
+    /// A detector that had complained finds that all is well again.
+    Passed(DetectorId),
+    /// An action has ended.
+    Ended {
+        /// Which.
+        action: ActionId,
+        /// How.
+        outcome: ActionOutcome,
+    },
+    /// A component completed its first cycle after an action: it works again.
+    Works {
+        /// Index of the component.
+        component: usize,
+        /// Its incarnation.
+        incarnation: u32,
+    },
+    /// An operator ends a fault that has healed or is latched; without a number, all of them, and
+    /// the emergency stop.
+    Clear(Option<FaultId>),
+    /// Nothing but that time has passed.
+    Tick,
+}
+
+/// What a detector saw.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Symptom {
+    /// Which detector.
+    pub detector: DetectorId,
+    /// Incarnation of the component.
+    pub incarnation: u32,
+    /// What kind of fault it would be.
+    pub kind: FaultKind,
+    /// What the callback returned, for [`FaultKind::ErrorReturn`]; 0 else.
+    pub return_code: u32,
+    /// When it manifested itself, by the clock of the application.
+    pub at: Duration,
+    /// Whether the component still runs. One that does not is in ERROR and must be recovered.
+    pub runs: bool,
+    /// What was seen.
+    pub evidence: Evidence,
+}
+
+/// How an action ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ActionOutcome {
+    /// As wished; the note says what a person may want to know (which checkpoint was restored).
+    Done {
+        /// Incarnation of the component afterwards.
+        incarnation: u32,
+        /// For a person; may be empty.
+        note: String,
+    },
+    /// Not.
+    Failed {
+        /// Why.
+        reason: String,
+    },
+}
+
+/// What was seen, for the verdict.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Evidence {
+    /// A runtime exception, a hang, a failure returned or reported.
+    Exception {
+        /// Callback, as OPRoS names it.
+        callback: String,
+        /// What was seen, in words.
+        message: String,
+        /// `file:line:column` in the component's source.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        place: Option<String>,
+        /// Name of the signal.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        signal: Option<String>,
+        /// `si_addr` as hexadecimal number, where it is the same in every run or time is real.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        address: Option<String>,
+        /// Frames of the component, innermost first.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        backtrace: Vec<String>,
+        /// Whether the thread was lost with the component.
+        thread_lost: bool,
+    },
+    /// A value of a port and its limits.
+    Value {
+        /// Port.
+        port: String,
+        /// Field.
+        field: String,
+        /// The value.
+        value: Number,
+        /// Least value allowed.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        minimum: Option<f64>,
+        /// Largest value allowed.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        maximum: Option<f64>,
+    },
+    /// A value that jumped.
+    Jump {
+        /// Port.
+        port: String,
+        /// Field.
+        field: String,
+        /// The value.
+        value: Number,
+        /// How fast it changed, per second.
+        rate: Number,
+        /// Largest rate allowed.
+        maximum_per_second: f64,
+    },
+    /// Values that do not change.
+    Frozen {
+        /// Port.
+        port: String,
+        /// Field; empty for the whole datum.
+        field: String,
+        /// So many equal data.
+        count: u32,
+    },
+    /// A datum of the wrong size.
+    Size {
+        /// Port.
+        port: String,
+        /// Bytes that came.
+        size: usize,
+        /// Bytes that the type has.
+        expected: usize,
+    },
+    /// An input without new data.
+    Age {
+        /// Port.
+        port: String,
+        /// Age of the newest datum in milliseconds.
+        age_ms: f64,
+        /// Largest age allowed.
+        maximum_ms: f64,
+    },
+    /// Cycles that took too long.
+    Overruns {
+        /// How many.
+        count: u32,
+        /// How many are tolerated.
+        tolerated: u32,
+        /// Within which time.
+        within_ms: f64,
+    },
+    /// Work that was not completed.
+    Heartbeat {
+        /// Periods without work.
+        missed: u32,
+        /// Length of a period.
+        period_ms: f64,
+    },
+    /// A residual of a process model.
+    Residual {
+        /// Monitor.
+        monitor: String,
+        /// Decision rule.
+        method: String,
+        /// What was measured minus what the model says.
+        residual: Number,
+        /// What the decision rule made of it.
+        statistic: Number,
+        /// What it is compared with.
+        threshold: f64,
+    },
+    /// A vote.
+    Votes {
+        /// Voter.
+        voter: String,
+        /// What this source said.
+        value: Number,
+        /// What was voted.
+        voted: Number,
+        /// How far a source may be off.
+        tolerance: f64,
+        /// What all sources said, in their order; null for a source that said nothing usable.
+        votes: Vec<Option<Number>>,
+    },
+    /// A recovery that failed or took too long.
+    Recovery {
+        /// What was tried.
+        action: String,
+        /// Why it is over.
+        reason: String,
+    },
+}
+
+/// A number that may be no number: JSON has none for NaN and the infinities, they are written as
+/// text.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Number(pub f64);
+
+impl Serialize for Number {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        if self.0.is_finite() {
+            serializer.serialize_f64(self.0)
+        } else {
+            serializer.collect_str(&self.0)
+        }
+    }
+}
