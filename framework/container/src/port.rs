@@ -39,7 +39,7 @@ pub type Newest = CachePadded<AtomicU64>;
 
 /// A datum is given to a second incarnation when the first one died of it or of something else;
 /// after that it is the datum.
-const MOST_DEATHS: u32 = 2;
+pub const MOST_DEATHS: u32 = 2;
 
 /// What both ends share; hardly ever written.
 #[derive(Debug, Default)]

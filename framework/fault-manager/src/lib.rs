@@ -11,7 +11,9 @@
 
 mod observation;
 mod plan;
+mod stub;
 mod verdict;
+pub use stub::*;
 
 pub use observation::{
     ActionOutcome, Detector, DetectorId, DetectorKind, Evidence, Number, Observation, Symptom,
