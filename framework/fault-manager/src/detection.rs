@@ -7,6 +7,7 @@
 pub mod data_check;
 pub mod liveness;
 mod number;
+pub mod process_model;
 pub mod voting;
 
 pub use number::{NumberReader, UnknownField};
