@@ -9,6 +9,7 @@
 //! severity of the application, emergency stop. Ahn et al. (2012), sections 2.2 to 3.4.
 #![forbid(unsafe_code)]
 
+pub mod detection;
 mod observation;
 mod plan;
 mod stub;
