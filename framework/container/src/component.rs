@@ -6,6 +6,7 @@ mod judgement;
 mod port_end;
 mod services;
 mod succession;
+mod tap;
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -28,6 +29,7 @@ pub use port_end::{
     BoundMethod, Calls, DataInput, DataOutput, EventOutput, Inbox, PortEnd, Provider,
 };
 pub use services::{Detectors, Environment, Services};
+pub use tap::{InputTap, OutputTap, SafeDatum, Watch};
 
 /// The event port by which a component may hear of an emergency stop.
 const EMERGENCY_STOP: &str = "emergency_stop";

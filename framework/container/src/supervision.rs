@@ -1,6 +1,8 @@
 //! Around the fault manager: what is observed reaches it, what it decides is done.
 
 mod emergency;
+mod models;
+mod monitors;
 pub(crate) mod obedience;
 mod observations;
 mod orders;
@@ -10,6 +12,8 @@ mod supervisor;
 mod threads;
 
 pub use emergency::{Actuator, CONTROLLED_STOP, Emergency, SafetyGate};
+pub use models::{Channel, ModelMonitor, Reading, Sampler};
+pub use monitors::{InputAge, LOOK_PERIOD, Monitors, OverrunCount, Subject, WorkDone};
 pub use observations::Observations;
 pub use orders::{Order, Orders, Task};
 pub use standby::Standbys;

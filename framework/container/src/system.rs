@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 
 use crossbeam::channel::Sender;
 use robot_simulation::Simulation;
+use system_model::process_model::ProcessModel;
 use system_model::rules::FaultRules;
 use system_model::specification::ApplicationSpecification;
 
@@ -73,6 +74,8 @@ pub struct RunOptions {
     pub libraries: LibraryOptions,
     /// What counts as a fault and what is done about it; none: the defaults.
     pub rules: FaultRules,
+    /// The process models that the rules name, by the name that they use.
+    pub models: Vec<(String, ProcessModel)>,
 }
 
 /// Why an application did not start. Nothing of it runs.
@@ -165,8 +168,14 @@ impl System {
             &environment,
         )
         .map_err(StartError::Assembly)?;
-        let (supervisor, wanted) =
-            supervise(specification, &options.rules, &assembly, &environment);
+        let (supervisor, wanted) = supervise(
+            specification,
+            &options.rules,
+            &options.models,
+            &assembly,
+            &environment,
+        )
+        .map_err(StartError::Assembly)?;
         let Assembly {
             components,
             statuses,

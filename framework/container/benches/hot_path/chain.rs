@@ -120,6 +120,7 @@ fn time_cycles(length: usize, count: u64) -> Duration {
         let (sender, receiver) = connection(QueuePolicy::Last, 1, size_of::<Sample>());
         let output = DataOutput {
             size: size_of::<Sample>(),
+            tap: None,
             connections: if number + 1 < length {
                 vec![(sender, None)]
             } else {
@@ -129,6 +130,7 @@ fn time_cycles(length: usize, count: u64) -> Duration {
         let ports = vec![
             PortEnd::DataInput(DataInput {
                 source: arriving.replace(receiver),
+                tap: None,
                 size: size_of::<Sample>(),
             }),
             PortEnd::DataOutput(output),

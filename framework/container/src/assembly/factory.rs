@@ -119,12 +119,15 @@ fn unconnected(port: &PortDescription) -> PortEnd {
         .as_ref()
         .map_or(0, |data_type| data_type.size);
     match (port.kind, port.direction) {
-        (PortKind::Data, PortDirection::Input) => {
-            PortEnd::DataInput(DataInput { size, source: None })
-        }
+        (PortKind::Data, PortDirection::Input) => PortEnd::DataInput(DataInput {
+            size,
+            source: None,
+            tap: None,
+        }),
         (PortKind::Data, PortDirection::Output) => PortEnd::DataOutput(DataOutput {
             size,
             connections: Vec::new(),
+            tap: None,
         }),
         (PortKind::Event, PortDirection::Input) => PortEnd::EventInput,
         (PortKind::Event, PortDirection::Output) => PortEnd::EventOutput(EventOutput {

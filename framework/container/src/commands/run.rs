@@ -131,6 +131,7 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         echo: Some(echo),
         libraries: libraries(arguments),
         rules,
+        models: Vec::new(),
     };
     let started = System::start(&specification, simulation, options);
     let system = started.map_err(|error| refused(&error))?;

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::cell::ComponentCell;
+use super::tap::{InputTap, OutputTap};
 use crate::port::{Datum, Leftover, MOST_DEATHS, MailReceiver, MailSender, Receiver, Sender};
 use crate::wake::Wake;
 
@@ -28,6 +29,8 @@ pub struct DataInput {
     pub size: usize,
     /// What arrives; none if nothing is connected.
     pub source: Option<Receiver>,
+    /// What rules want to know or to change; none without rules.
+    pub tap: Option<Box<InputTap>>,
 }
 
 /// A data output with its connections.
@@ -36,6 +39,8 @@ pub struct DataOutput {
     pub size: usize,
     /// One for each connected input, with what wakes its reader.
     pub connections: Vec<(Sender, Option<Arc<Wake>>)>,
+    /// What rules want to know; none without rules.
+    pub tap: Option<Box<OutputTap>>,
 }
 
 /// An event output with its connections.

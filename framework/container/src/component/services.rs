@@ -4,6 +4,7 @@
 mod calls;
 mod identity;
 mod requests;
+mod tapped;
 mod work;
 
 use std::sync::Arc;
@@ -181,6 +182,9 @@ impl Services {
         if data.size() != input.size {
             return Status::BAD_INPUT_PARAMETER;
         }
+        if input.tap.is_some() {
+            return self.read_tapped(port, data);
+        }
         match input.source.as_mut().and_then(Receiver::receive) {
             None => Status::NOTHING,
             Some(datum) if data.copy_from(datum.bytes()) => {
@@ -198,6 +202,9 @@ impl Services {
         };
         if data.size() != output.size {
             return Status::BAD_INPUT_PARAMETER;
+        }
+        if output.tap.is_some() {
+            return self.write_tapped(port, data);
         }
         for (sender, wake) in &mut output.connections {
             if !sender.send(self.cycle_ns, self.incarnation, |bytes| data.copy_to(bytes)) {

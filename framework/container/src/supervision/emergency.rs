@@ -32,12 +32,6 @@ impl SafetyGate {
         stamp_ns >= self.open_since_ns.load(Ordering::Acquire)
     }
 
-    /// Whether it was never closed.
-    #[inline]
-    pub fn was_never_closed(&self) -> bool {
-        self.open_since_ns.load(Ordering::Relaxed) == 0
-    }
-
     fn close(&self) {
         self.open_since_ns.store(CLOSED, Ordering::Release);
     }
@@ -54,8 +48,8 @@ pub struct Actuator {
     pub component: usize,
     /// How it stops.
     pub category: StopCategory,
-    /// The gates of its command ports.
-    pub gates: Vec<Arc<SafetyGate>>,
+    /// In front of its command ports.
+    pub gate: Arc<SafetyGate>,
 }
 
 /// How one actuator is to be stopped.
@@ -85,11 +79,17 @@ impl Emergency {
         }
     }
 
+    /// The gate of an actuator.
+    pub fn gate(&self, component: usize) -> Option<Arc<SafetyGate>> {
+        let actuator = self.actuators.iter().find(|one| one.component == component);
+        actuator.map(|one| Arc::clone(&one.gate))
+    }
+
     /// Closes all gates; what is to be done with each actuator.
     pub(super) fn engage(&self, action: ActionId) -> Vec<ActuatorStop> {
         self.action.store(action.0, Ordering::Release);
         self.waiting.store(self.actuators.len(), Ordering::Release);
-        for gate in self.actuators.iter().flat_map(|one| &one.gates) {
+        for gate in self.actuators.iter().map(|one| &one.gate) {
             gate.close();
         }
         let stop = |actuator: &Actuator| ActuatorStop {
@@ -116,7 +116,7 @@ impl Emergency {
 
     /// Opens all gates for commands that are written from now on; the actuators.
     pub(super) fn rearm(&self, now_ns: u64) -> Vec<usize> {
-        for gate in self.actuators.iter().flat_map(|one| &one.gates) {
+        for gate in self.actuators.iter().map(|one| &one.gate) {
             gate.open(now_ns.max(1));
         }
         self.actuators.iter().map(|one| one.component).collect()
@@ -133,14 +133,14 @@ mod tests {
         let actuator = |component, category| Actuator {
             component,
             category,
-            gates: vec![Arc::clone(&gate)],
+            gate: Arc::clone(&gate),
         };
         let emergency = Emergency::new(vec![
             actuator(3, StopCategory::PowerOff),
             actuator(5, StopCategory::ControlledThenOff),
             actuator(7, StopCategory::Controlled),
         ]);
-        assert!(gate.passes(0) && gate.was_never_closed());
+        assert!(gate.passes(0));
         let stops = emergency.engage(ActionId(9));
         let expected = [
             (3, Some(Duration::ZERO)),
@@ -152,7 +152,7 @@ mod tests {
             .map(|it| (it.component, it.power_off_after))
             .collect();
         assert_eq!(stops, expected);
-        assert!(!gate.passes(0) && !gate.passes(1_000) && !gate.was_never_closed());
+        assert!(!gate.passes(0) && !gate.passes(1_000));
         let last: Vec<bool> = (0..3).map(|_| emergency.answered(ActionId(9))).collect();
         assert_eq!(last, [false, false, true]);
         assert_eq!(emergency.rearm(500), [3, 5, 7]);

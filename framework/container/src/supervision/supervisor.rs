@@ -12,6 +12,7 @@ use fault_manager::{
     Action, ActionId, ActionOutcome, Effect, FaultManager, Observation, PlannedAction, Verdict,
 };
 
+use super::Monitors;
 use super::emergency::Emergency;
 use super::orders::{Order, Orders, Task};
 use super::standby::Standbys;
@@ -31,6 +32,7 @@ pub struct Supervisor {
     orders: Vec<Arc<Orders>>,
     standbys: Vec<Standbys>,
     emergency: Emergency,
+    monitors: Mutex<Monitors>,
     /// Wakes the thread that looks after time.
     wake: Wake,
     /// Components of which a standby was used, for the thread that prepares another.
@@ -53,6 +55,7 @@ impl Supervisor {
         orders: Vec<Arc<Orders>>,
         standbys: Vec<Standbys>,
         emergency: Emergency,
+        monitors: Monitors,
     ) -> (Self, Receiver<usize>) {
         let (wanted, wants) = bounded(standbys.len().max(1));
         let supervisor = Self {
@@ -65,6 +68,7 @@ impl Supervisor {
             orders,
             standbys,
             emergency,
+            monitors: Mutex::new(monitors),
             wake: Wake::default(),
             wanted,
         };
@@ -129,6 +133,10 @@ impl Supervisor {
     /// What time brings: orders that are due, deadlines of the fault manager.
     pub fn tick(&self) {
         let now_ns = self.environment.clock.now_ns();
+        self.monitors
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .look(Duration::from_nanos(now_ns), &self.environment.observations);
         let (due, wants_tick) = {
             let mut core = self.lock();
             let mut due = Vec::new();
@@ -159,7 +167,12 @@ impl Supervisor {
         let core = self.lock();
         let later = core.later.iter().map(|(time_ns, _)| *time_ns).min();
         let manager = core.manager.due().map(nanoseconds);
-        [later, manager].into_iter().flatten().min()
+        let monitors = self
+            .monitors
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .due_ns();
+        [later, manager, monitors].into_iter().flatten().min()
     }
 
     /// Sleeps until something may be due, at most `limit`.
