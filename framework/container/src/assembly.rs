@@ -8,12 +8,14 @@ mod executors;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use system_model::rules::ComponentRules;
 use system_model::specification::{
     ApplicationSpecification, ComponentSpecification, ExecutionKind, Place, PortDirection, PortKind,
 };
 
 use crate::component::{
-    Calls, Component, ComponentCell, DataOutput, Environment, EventOutput, PortEnd, Services,
+    CallLimits, Calls, Component, ComponentCell, DataOutput, Environment, EventOutput, PortEnd,
+    Services,
 };
 use crate::executor::Executor;
 use crate::guard::Guarded;
@@ -242,12 +244,10 @@ fn instantiate(
         ExecutionKind::Periodic | ExecutionKind::PeriodicShared => component.execution.period,
         ExecutionKind::Passive | ExecutionKind::Aperiodic => std::time::Duration::ZERO,
     };
-    Ok(ComponentCell::new(Component::new(
-        guarded,
-        services,
-        Arc::clone(status),
-        period,
-    )))
+    let mut instance = Component::new(guarded, services, Arc::clone(status), period);
+    let limits = CallLimits::by_rules(&ComponentRules::default(), &component.execution);
+    instance.set_limits(limits.by_clock(&environment.clock));
+    Ok(ComponentCell::new(instance))
 }
 
 fn unconnected(port: &PortDescription) -> PortEnd {

@@ -1,6 +1,7 @@
 //! A component instance in the container: life cycle, ports, and what became of it.
 
 mod cell;
+mod limits;
 mod port_end;
 mod services;
 
@@ -15,9 +16,11 @@ use crate::event_log::Event;
 use crate::guard::loss::{Loss, LostThread};
 use crate::guard::{Callback, Ending, Exit, Guarded, ServiceCall, Trap};
 use crate::status::ComponentStatus;
+use limits::Limits;
 
 pub(crate) use cell::mark_lost;
 pub use cell::{ComponentCell, Entered};
+pub use limits::CallLimits;
 pub use port_end::{BoundMethod, Calls, DataOutput, EventOutput, Inbox, PortEnd, Provider};
 pub use services::{Environment, Services};
 
@@ -29,6 +32,7 @@ pub struct Component {
     services: Services,
     status: Arc<ComponentStatus>,
     period: Duration,
+    limits: Limits,
 }
 
 /// Why an operation did not bring the component where it should be.
@@ -55,7 +59,13 @@ impl Component {
             services,
             status,
             period,
+            limits: CallLimits::default().into(),
         }
+    }
+
+    /// Sets how long its callbacks may take; before that the default holds.
+    pub fn set_limits(&mut self, limits: CallLimits) {
+        self.limits = limits.into();
     }
 
     /// Instance name.
@@ -251,7 +261,8 @@ impl Component {
         loss: &Loss,
     ) -> Result<(), Box<Fault>> {
         self.services.begin(name);
-        let ending = self.guarded.call(callback, loss, &mut self.services);
+        let limit = self.limits.of(callback);
+        let ending = self.guarded.call(callback, limit, loss, &mut self.services);
         match ending {
             Ending::Returned(status) if status.is_success() && !self.services.has_bad_pointer() => {
                 Ok(())
@@ -337,6 +348,7 @@ fn trap_fault(trap: &Trap, callback: &'static str, thread_lost: bool) -> Fault {
     /// The first page is never mapped: an address in it is a field of a null pointer.
     const NULL_PAGE: usize = 4096;
     let kind = match trap.signal {
+        _ if trap.hang.is_some() => FaultKind::Hang,
         _ if trap.stack_overflow => FaultKind::StackOverflow,
         libc::SIGBUS => FaultKind::BusError,
         libc::SIGFPE => FaultKind::DivideByZero,
@@ -346,6 +358,10 @@ fn trap_fault(trap: &Trap, callback: &'static str, thread_lost: bool) -> Fault {
     };
     let signal = signal_name(trap.signal);
     let mut message = match kind {
+        FaultKind::Hang => {
+            let limit = trap.hang.unwrap_or_default();
+            format!("it did not return within {limit:?}")
+        }
         FaultKind::StackOverflow => "the stack's guard area was hit".to_owned(),
         _ => signal.to_owned(),
     };
@@ -374,6 +390,7 @@ fn signal_name(signal: i32) -> &'static str {
         libc::SIGILL => "SIGILL",
         libc::SIGTRAP => "SIGTRAP",
         libc::SIGABRT => "SIGABRT",
-        _ => "SIGSEGV",
+        libc::SIGSEGV => "SIGSEGV",
+        _ => "watchdog",
     }
 }

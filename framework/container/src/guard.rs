@@ -6,11 +6,14 @@
 //! coroutine return a record of it, and no frame of ours is skipped. The stack is then quarantined:
 //! never reused, never freed, like a coroutine that is never resumed.
 //!
-//! Survives: traps, aborts, `exit`, stack overflow into the guard area, panics. Does not survive:
-//! memory that the component corrupted before it trapped; a lock of the C library that it held.
+//! Survives: traps, aborts, `exit`, stack overflow into the guard area, panics, and hangs where a
+//! watchdog watches. Does not survive: memory that the component corrupted before it trapped; a
+//! lock of the C library that it held.
 #![allow(unsafe_code)] // the whole point: foreign code, stacks, signals
 
+mod code;
 mod copy;
+mod hang;
 mod host;
 mod interpose;
 pub mod loss;
@@ -19,6 +22,7 @@ mod stack;
 mod stray;
 mod table;
 mod trap;
+pub mod watch;
 
 use std::hint::black_box;
 use std::io;
@@ -28,9 +32,12 @@ use std::ptr;
 use component_abi::{Callbacks, Instance, Status};
 use corosensei::{Coroutine, CoroutineResult, Yielder};
 
+pub use code::CodeRange;
+pub use hang::interrupt;
 pub use host::{ForeignBytes, ForeignBytesMut, ForeignText, HostServices, Request};
 pub use interpose::Exit;
-pub use trap::{CodeRange, Trap};
+pub use trap::Trap;
+pub use watch::CallLimit;
 
 use host::HostSide;
 use loss::Loss;
@@ -221,11 +228,13 @@ impl Guarded {
     }
 
     /// Runs a callback to its end; host services that it asks for are answered by `services`.
-    /// `loss` is where this thread leaves word if it is lost inside.
+    /// `loss` is where this thread leaves word of what it is in, and if it is lost inside. After
+    /// `limit` the watchdog breaks the callback off, if one watches over `loss`.
     #[inline]
     pub fn call<Services: HostServices>(
         &mut self,
         callback: Callback,
+        limit: CallLimit,
         loss: &Loss,
         services: &mut Services,
     ) -> Ending {
@@ -245,6 +254,7 @@ impl Guarded {
                 Input::Callback
             }
         };
+        let watched = loss.watch().enter(limit);
         let ending = loop {
             match coroutine.resume(input) {
                 CoroutineResult::Yield(yielded) => match yielded.what {
@@ -252,7 +262,9 @@ impl Guarded {
                     What::Asked => {
                         // SAFETY: the component is suspended, so nobody else uses the services.
                         let services = unsafe { &mut *services };
+                        loss.watch().pause(&watched);
                         self.side.set_reply(services.answer(self.side.request()));
+                        loss.watch().resume(&watched);
                         input = Input::Reply;
                     }
                     What::Left => break Ending::Left(self.side.exit()),
@@ -261,6 +273,7 @@ impl Guarded {
                 CoroutineResult::Return(Ended::Asked) => break Ending::Gone,
             }
         };
+        loss.watch().leave(watched);
         trap::set_current(self.frame.outer);
         if !matches!(ending, Ending::Returned(_)) {
             self.quarantine();

@@ -19,4 +19,5 @@ pub mod status;
 pub mod summary;
 pub mod system;
 pub mod wake;
+mod watchdog;
 pub mod world;

@@ -8,6 +8,7 @@
 
 use std::cell::{Cell, UnsafeCell};
 use std::ptr;
+use std::sync::atomic::{AtomicBool, Ordering, compiler_fence};
 
 use component_abi::{HostContext, Instance, Status, Text};
 use corosensei::Yielder;
@@ -148,6 +149,9 @@ pub(super) struct HostSide {
     /// Who answers during this call, and how.
     services: Cell<*mut ()>,
     answer: Cell<Answer>,
+    /// Set while a request is answered on the component's stack: then the component must not be
+    /// taken off, though the stack is its own.
+    answering: AtomicBool,
     exit: Cell<Exit>,
     base: usize,
     limit: usize,
@@ -172,6 +176,7 @@ impl HostSide {
             reply: Cell::new(0),
             services: Cell::new(ptr::null_mut()),
             answer: Cell::new(answer_nothing),
+            answering: AtomicBool::new(false),
             exit: Cell::new(Exit::Abort),
             base: 0,
             limit: 0,
@@ -248,9 +253,20 @@ impl HostSide {
             return u64::from(Status::UNAUTHORIZED.0);
         }
         let answer = self.answer.get();
+        self.answering.store(true, Ordering::Relaxed);
+        // Who looks is a signal handler on this very thread: only the compiler must keep the order.
+        compiler_fence(Ordering::SeqCst);
         // SAFETY: set by the call that is under way (we are on this component's stack), which
         // does not touch the services while the component runs.
-        unsafe { answer(self.services.get(), request) }
+        let reply = unsafe { answer(self.services.get(), request) };
+        compiler_fence(Ordering::SeqCst);
+        self.answering.store(false, Ordering::Relaxed);
+        reply
+    }
+
+    /// Whether a request is being answered on the component's stack. Called inside the handler.
+    pub(super) fn is_answering(&self) -> bool {
+        self.answering.load(Ordering::Relaxed)
     }
 
     #[inline]
