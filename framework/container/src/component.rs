@@ -14,7 +14,7 @@ use system_model::life_cycle::{LifeCycleState, Operation, Transition, transition
 
 use crate::event_log::Event;
 use crate::guard::loss::{Loss, LostThread};
-use crate::guard::{Callback, Ending, Exit, Guarded, ServiceCall, Trap};
+use crate::guard::{Callback, Ending, Exit, Guarded, Misbehaviour, ServiceCall, Trap};
 use crate::status::ComponentStatus;
 use limits::Limits;
 
@@ -61,6 +61,11 @@ impl Component {
             period,
             limits: CallLimits::default().into(),
         }
+    }
+
+    /// Lets it misbehave when its next callback is due; it does not know.
+    pub fn inject(&mut self, misbehaviour: Option<Misbehaviour>) {
+        self.guarded.inject(misbehaviour);
     }
 
     /// Sets how long its callbacks may take; before that the default holds.

@@ -15,6 +15,7 @@ mod code;
 mod copy;
 mod hang;
 mod host;
+mod injection;
 mod interpose;
 pub mod loss;
 mod registers;
@@ -35,6 +36,7 @@ use corosensei::{Coroutine, CoroutineResult, Yielder};
 pub use code::CodeRange;
 pub use hang::interrupt;
 pub use host::{ForeignBytes, ForeignBytesMut, ForeignText, HostServices, Request};
+pub use injection::Misbehaviour;
 pub use interpose::Exit;
 pub use trap::Trap;
 pub use watch::CallLimit;
@@ -121,6 +123,8 @@ enum Input {
     /// Run `onExecute`, `onUpdated`: the two calls of every cycle.
     Execute,
     Updated,
+    /// Misbehave as the host side says, then perhaps run the callback that it names.
+    Injected,
     /// The answer to what was asked is in the host side.
     Reply,
     End,
@@ -247,6 +251,10 @@ impl Guarded {
         let services: *mut Services = services;
         self.side.set_services(services);
         let mut input = match callback {
+            injected if self.side.has_injection() => {
+                self.side.set_callback(injected);
+                Input::Injected
+            }
             Callback::Execute => Input::Execute,
             Callback::Updated => Input::Updated,
             other => {
@@ -279,6 +287,12 @@ impl Guarded {
             self.quarantine();
         }
         ending
+    }
+
+    /// Lets the component misbehave when its next callback is due, whichever that is; `None` takes
+    /// that back. It happens once.
+    pub fn inject(&mut self, misbehaviour: Option<Misbehaviour>) {
+        self.side.set_injection(misbehaviour);
     }
 
     /// Never call this instance again; what it holds stays as it is. Also for an instance whose
@@ -320,6 +334,10 @@ fn serve(
             Input::Execute => plain(callbacks.on_execute, side.instance()),
             Input::Updated => plain(callbacks.on_updated, side.instance()),
             Input::Callback => invoke(side, callbacks, side.callback()),
+            Input::Injected => side
+                .take_injection()
+                .and_then(|misbehaviour| injection::misbehave(side, misbehaviour))
+                .unwrap_or_else(|| invoke(side, callbacks, side.callback())),
             // A reply without a question does not happen; ending is the safe answer.
             Input::Reply | Input::End => return Ended::Asked,
         };

@@ -81,7 +81,7 @@ extern "C" fn handle(
         stack_overflow: false,
         hang: Some(inside.limit.duration()),
     };
-    if frame.code.contains(instruction_pointer) {
+    if frame.is_own_code(instruction_pointer) {
         trap::take_off(frame, trap, context);
     } else if is_ours(instruction_pointer) {
         // On its way into the container or out of it.

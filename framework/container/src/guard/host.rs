@@ -16,7 +16,7 @@ use corosensei::stack::Stack as _;
 
 use super::copy::guarded_copy;
 use super::stack::ComponentStack;
-use super::{Callback, Exit, Input, What, Yielded};
+use super::{Callback, Exit, Input, Misbehaviour, What, Yielded};
 
 /// What a component asks. Pointers are as the component gave them: anything.
 #[derive(Debug, Clone, Copy)]
@@ -152,6 +152,8 @@ pub(super) struct HostSide {
     /// Set while a request is answered on the component's stack: then the component must not be
     /// taken off, though the stack is its own.
     answering: AtomicBool,
+    /// What happens at the next callback.
+    injection: Cell<Option<Misbehaviour>>,
     exit: Cell<Exit>,
     base: usize,
     limit: usize,
@@ -177,6 +179,7 @@ impl HostSide {
             services: Cell::new(ptr::null_mut()),
             answer: Cell::new(answer_nothing),
             answering: AtomicBool::new(false),
+            injection: Cell::new(None),
             exit: Cell::new(Exit::Abort),
             base: 0,
             limit: 0,
@@ -217,6 +220,19 @@ impl HostSide {
 
     pub(super) fn set_callback(&self, callback: Callback) {
         self.callback.set(callback);
+    }
+
+    pub(super) fn set_injection(&self, misbehaviour: Option<Misbehaviour>) {
+        self.injection.set(misbehaviour);
+    }
+
+    #[inline]
+    pub(super) fn has_injection(&self) -> bool {
+        self.injection.get().is_some()
+    }
+
+    pub(super) fn take_injection(&self) -> Option<Misbehaviour> {
+        self.injection.take()
     }
 
     pub(super) fn request(&self) -> &Request {

@@ -16,6 +16,7 @@ use corosensei::trap::CoroutineTrapHandler;
 use super::code::CodeRange;
 use super::copy;
 use super::hang;
+use super::injection;
 use super::loss::Loss;
 use super::registers;
 use super::stack::ComponentStack;
@@ -73,6 +74,13 @@ pub(super) struct Frame {
     pub(super) component: u32,
     /// Opaque to the handler: the host context, for calls that end the component from inside.
     pub(super) context: *const super::host::HostSide,
+}
+
+impl Frame {
+    /// Whether an instruction is the component's own, or stands for one.
+    pub(super) fn is_own_code(&self, instruction_pointer: usize) -> bool {
+        self.code.contains(instruction_pointer) || injection::contains(instruction_pointer)
+    }
 }
 
 thread_local! {
@@ -168,7 +176,7 @@ extern "C" fn handle(
                 instruction_pointer,
                 stack_pointer,
             );
-            if frame.code.contains(instruction_pointer) {
+            if frame.is_own_code(instruction_pointer) {
                 take_off(frame, trap, context);
             } else {
                 // In the C library or the loader: a lock may be held. The thread stops here for ever.
