@@ -105,7 +105,7 @@ pub fn assemble(
     if !problems.is_empty() {
         return Err(problems);
     }
-    let factories = factories(specification, &primaries, secondaries, environment);
+    let factories = factories(specification, rules, &primaries, secondaries, environment);
     let mut components = Vec::new();
     let mut statuses = Vec::new();
     for (factory, library) in factories.iter().zip(&primaries) {
@@ -162,6 +162,7 @@ fn secondaries<'rules>(
 
 fn factories(
     specification: &ApplicationSpecification,
+    rules: &FaultRules,
     primaries: &[LoadedLibrary],
     secondaries: Vec<Vec<secondary::Candidate<'_>>>,
     environment: &Arc<Environment>,
@@ -179,7 +180,9 @@ fn factories(
             path: candidate.library.path,
             preload: candidate.rule.preload,
         }));
-        Arc::new(Factory::new(number, variants, Arc::clone(environment)))
+        let rules = rules.components.get(number).cloned().unwrap_or_default();
+        let environment = Arc::clone(environment);
+        Arc::new(Factory::new(number, variants, rules, environment))
     })
     .collect()
 }

@@ -3,6 +3,7 @@
 mod cell;
 mod checkpoint;
 mod judgement;
+mod limits;
 mod port_end;
 mod services;
 mod succession;
@@ -19,12 +20,14 @@ use system_model::specification::{PortDirection, PortKind};
 
 use crate::event_log::Event;
 use crate::guard::loss::{Loss, LostThread};
-use crate::guard::{Callback, Ending, Guarded, ServiceCall};
+use crate::guard::{Callback, Ending, Guarded, Misbehaviour, ServiceCall};
 use crate::status::ComponentStatus;
+use limits::Limits;
 
 pub(crate) use cell::mark_lost;
 pub use cell::{ComponentCell, Entered};
 pub use checkpoint::Checkpoints;
+pub use limits::CallLimits;
 pub use port_end::{
     BoundMethod, Calls, DataInput, DataOutput, EventOutput, Inbox, PortEnd, Provider,
 };
@@ -49,6 +52,7 @@ pub struct Component {
     constructed: bool,
     /// Which of the component's libraries it is of: its own (0) or that of a secondary (from 1).
     variant: usize,
+    limits: Limits,
 }
 
 /// Why an operation did not bring the component where it should be.
@@ -79,7 +83,18 @@ impl Component {
             unproven: false,
             constructed: false,
             variant: 0,
+            limits: CallLimits::default().into(),
         }
+    }
+
+    /// Lets it misbehave when its next callback is due; it does not know.
+    pub fn inject(&mut self, misbehaviour: Option<Misbehaviour>) {
+        self.guarded.inject(misbehaviour);
+    }
+
+    /// Sets how long its callbacks may take; before that the default holds.
+    pub fn set_limits(&mut self, limits: CallLimits) {
+        self.limits = limits.into();
     }
 
     /// Instance name.
@@ -357,7 +372,8 @@ impl Component {
         loss: &Loss,
     ) -> Result<(), Box<Fault>> {
         self.services.begin(name);
-        let ending = self.guarded.call(callback, loss, &mut self.services);
+        let limit = self.limits.of(callback);
+        let ending = self.guarded.call(callback, limit, loss, &mut self.services);
         match ending {
             Ending::Returned(status) if status.is_success() && !self.services.has_bad_pointer() => {
                 Ok(())

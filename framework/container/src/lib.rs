@@ -20,4 +20,5 @@ pub mod summary;
 pub mod supervision;
 pub mod system;
 pub mod wake;
+mod watchdog;
 pub mod world;

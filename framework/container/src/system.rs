@@ -32,8 +32,9 @@ use agenda::LeftBehind;
 use real_time::WorldThread;
 use supervise::supervise;
 
-/// Loading devices, models and maps takes time; a component that is not up by then hangs.
-const BRING_UP_LIMIT: Duration = Duration::from_secs(30);
+/// Loading devices, models and maps takes time; what the watchdog cannot break off by then hangs.
+/// Half as long again as one callback of bringing up may take, so that the watchdog is first.
+const BRING_UP_LIMIT: Duration = Duration::from_secs(45);
 
 /// In which everything must have stopped: what a person waits after Ctrl-C before pulling the plug.
 const STOP_LIMIT: Duration = Duration::from_secs(3);

@@ -6,11 +6,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
-use system_model::rules::Preload;
+use system_model::rules::{ComponentRules, Preload};
 use system_model::specification::{ComponentSpecification, ExecutionKind, PortDirection, PortKind};
 
 use crate::component::{
-    Calls, Component, DataInput, DataOutput, Environment, EventOutput, PortEnd, Services,
+    CallLimits, Calls, Component, DataInput, DataOutput, Environment, EventOutput, PortEnd,
+    Services,
 };
 use crate::guard::Guarded;
 use crate::library::{LoadedLibrary, PortDescription};
@@ -23,6 +24,7 @@ pub struct Factory {
     number: u32,
     /// The component itself, then its secondaries in order.
     variants: Vec<Variant>,
+    rules: ComponentRules,
     /// So many loads from now fail (fault injection).
     missing: AtomicU32,
 }
@@ -39,8 +41,14 @@ pub struct Variant {
 
 impl Factory {
     /// A factory for the component of this number.
-    pub fn new(number: usize, variants: Vec<Variant>, environment: Arc<Environment>) -> Self {
+    pub fn new(
+        number: usize,
+        variants: Vec<Variant>,
+        rules: ComponentRules,
+        environment: Arc<Environment>,
+    ) -> Self {
         Self {
+            rules,
             environment,
             number: u32::try_from(number).unwrap_or(u32::MAX),
             variants,
@@ -109,7 +117,10 @@ impl Factory {
             }
             ExecutionKind::Passive | ExecutionKind::Aperiodic => Duration::ZERO,
         };
-        Ok(Component::new(guarded, services, status, period))
+        let mut component = Component::new(guarded, services, status, period);
+        let limits = CallLimits::by_rules(&self.rules, &specification.execution);
+        component.set_limits(limits.by_clock(&self.environment.clock));
+        Ok(component)
     }
 }
 

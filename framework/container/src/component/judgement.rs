@@ -113,6 +113,7 @@ pub(super) fn stray_fault(trap: &Trap) -> Fault {
 /// they say something: a null dereference is near zero in every run.
 pub(super) fn trap_fault(trap: &Trap, callback: &'static str, thread_lost: bool) -> Fault {
     let kind = match trap.signal {
+        _ if trap.hang.is_some() => FaultKind::Hang,
         _ if trap.stack_overflow => FaultKind::StackOverflow,
         libc::SIGBUS => FaultKind::BusError,
         libc::SIGFPE => FaultKind::DivideByZero,
@@ -122,6 +123,10 @@ pub(super) fn trap_fault(trap: &Trap, callback: &'static str, thread_lost: bool)
     };
     let signal = signal_name(trap.signal);
     let mut message = match kind {
+        FaultKind::Hang => {
+            let limit = trap.hang.unwrap_or_default();
+            format!("it did not return within {limit:?}")
+        }
         FaultKind::StackOverflow => "the stack's guard area was hit".to_owned(),
         FaultKind::Segfault if trap.address < NULL_PAGE => {
             format!("{signal} at address {:#x} (null pointer)", trap.address)
@@ -150,6 +155,7 @@ fn signal_name(signal: i32) -> &'static str {
         libc::SIGILL => "SIGILL",
         libc::SIGTRAP => "SIGTRAP",
         libc::SIGABRT => "SIGABRT",
-        _ => "SIGSEGV",
+        libc::SIGSEGV => "SIGSEGV",
+        _ => "watchdog",
     }
 }
