@@ -12,7 +12,7 @@
 pub mod detection;
 mod observation;
 mod plan;
-mod stub;
+
 mod verdict;
 pub use stub::*;
 
