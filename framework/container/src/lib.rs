@@ -11,6 +11,7 @@ pub mod device;
 pub mod event_log;
 pub mod executor;
 pub mod guard;
+pub mod injection;
 pub mod lane;
 pub mod library;
 pub mod port;
