@@ -11,6 +11,7 @@
 
 mod actions;
 mod correlation;
+pub mod detection;
 mod detectors;
 mod emergency;
 mod graph;

@@ -8,9 +8,10 @@ use serde_json::Value;
 use system_model::profile::{ComponentProfile, Profile};
 
 use crate::problem::Problem;
+use crate::readers::injection::INJECTIONS_ROOT;
 use crate::readers::rules::RULES_ROOT;
 use crate::reading::reading;
-use crate::resolve::{Assembly, LoadOptions, LoadedFile, Sibling, rules};
+use crate::resolve::{Assembly, LoadOptions, LoadedFile, Sibling, injections, rules};
 
 /// What was found in one file.
 #[derive(Debug)]
@@ -46,6 +47,9 @@ pub fn check_file(path: &Path, options: &LoadOptions) -> Vec<FileReport> {
         Some(Profile::System(_)) => rules::check_system(&mut assembly, &file),
         None if file.document.root_name() == Some(RULES_ROOT) => {
             rules::check_rule_file(&mut assembly, &file);
+        }
+        None if file.document.root_name() == Some(INJECTIONS_ROOT) => {
+            injections::check_file(&mut assembly, &file);
         }
         _ => {}
     }

@@ -30,6 +30,9 @@ pub use node::Node;
 pub use problem::{MAX_PROBLEMS_PER_FILE, Problem, ProblemLog, Severity};
 pub use readers::{PROFILE_ROOTS, WorldOutcome, load_world, read_profile};
 pub use reading::reading;
-pub use resolve::{LoadOptions, LoadOutcome, RulesOutcome, load_application, load_rules};
+pub use resolve::{
+    InjectionsOutcome, LoadOptions, LoadOutcome, RulesOutcome, load_application, load_injections,
+    load_rules, read_injection,
+};
 pub use source::Source;
 pub use value::{Number, Value};

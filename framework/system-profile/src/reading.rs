@@ -39,6 +39,12 @@ pub fn reading(document: &Document) -> Value {
                 let names = components.map(|component| json!(component.attribute("name")));
                 facts.insert("components".into(), names.collect());
             }
+            "fault_injections" => {
+                facts.insert("application".into(), json!(root.attribute("application")));
+                let kinds = root.children_named("inject");
+                let kinds = kinds.map(|inject| json!(inject.attribute("fault")));
+                facts.insert("injections".into(), kinds.collect());
+            }
             _ => {}
         },
         None => {

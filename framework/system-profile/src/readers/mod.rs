@@ -5,6 +5,7 @@ mod component;
 mod data_type;
 mod execution;
 mod header;
+pub(crate) mod injection;
 mod ports;
 mod project;
 pub(crate) mod rules;
@@ -19,7 +20,7 @@ use crate::document::Document;
 pub use world::{WorldOutcome, load_world};
 
 /// The roots that [`read_profile`] understands.
-pub const PROFILE_ROOTS: [&str; 11] = [
+pub const PROFILE_ROOTS: [&str; 12] = [
     "component_profile",
     "package_profile",
     "application_profile",
@@ -31,6 +32,7 @@ pub const PROFILE_ROOTS: [&str; 11] = [
     "OPRoSProject",
     world::WORLD_ROOT,
     rules::RULES_ROOT,
+    injection::INJECTIONS_ROOT,
 ];
 
 /// Elements of the fault-tolerance dialect. They may stand inline in profiles, and are read
@@ -68,7 +70,8 @@ pub(crate) const FAULT_TOLERANCE: [&str; 27] = [
 /// Makes a document typed. A profile with errors is still returned, as far as it could be
 /// understood; ask [`Document::has_errors`] before it is used. A world is looked through for its
 /// problems, but it is no profile; [`load_world`] returns it. So is a rule file, whose rules mean
-/// something only together with their application; [`load_rules`](crate::load_rules) returns them.
+/// something only together with their application; [`load_rules`](crate::load_rules) returns them,
+/// and [`load_injections`](crate::load_injections) those of an injection file.
 pub fn read_profile(document: &Document) -> Option<Profile> {
     let root = document.root(&PROFILE_ROOTS)?;
     if root.name() == world::WORLD_ROOT {
@@ -78,6 +81,10 @@ pub fn read_profile(document: &Document) -> Option<Profile> {
     }
     if root.name() == rules::RULES_ROOT {
         let _looked_through = rules::read(&root);
+        return None;
+    }
+    if root.name() == injection::INJECTIONS_ROOT {
+        let _looked_through = injection::read(&root);
         return None;
     }
     let profile = match root.name() {

@@ -4,6 +4,7 @@
 mod connections;
 mod coordination;
 mod files;
+pub(crate) mod injections;
 mod instances;
 mod ports;
 mod references;
@@ -20,6 +21,7 @@ use crate::suggest;
 use connections::Wire;
 use coordination::Edge;
 pub(crate) use files::{Files, LoadedFile};
+pub use injections::{InjectionsOutcome, load_injections, read_injection};
 pub(crate) use references::Sibling;
 use rules::Site;
 pub use rules::{RulesOutcome, load_rules};

@@ -1,5 +1,7 @@
-//! Rules: what they mean when they are sound, and what each mistake is called.
+//! Rules and injections: what they mean when they are sound, and what each mistake is called.
 
+mod injection_mistakes;
+mod injections;
 mod meaning;
 mod mistakes;
 mod project;

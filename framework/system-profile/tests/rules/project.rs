@@ -4,8 +4,12 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use system_model::injection::Injection;
 use system_model::rules::FaultRules;
-use system_profile::{LoadOptions, Problem, Severity, check_file, load_application, load_rules};
+use system_model::specification::ApplicationSpecification;
+use system_profile::{
+    LoadOptions, Problem, Severity, check_file, load_application, load_injections, load_rules,
+};
 use tempfile::TempDir;
 
 pub fn data_port(name: &str, usage: &str, data_type: &str) -> String {
@@ -120,11 +124,7 @@ impl Project {
     }
 
     pub fn load_files(&self, files: &[PathBuf]) -> Loaded {
-        let options = LoadOptions::default();
-        let path = self.folder.path().join("applications/patrol.xml");
-        let application = load_application(&path, &options);
-        let specification = application.specification.expect("a sound application");
-        let outcome = load_rules(&specification, files, &options);
+        let outcome = load_rules(&self.specification(), files, &LoadOptions::default());
         let problems = outcome.problems.iter().map(|problem| {
             let file = problem.place.file.file_stem().unwrap().to_string_lossy();
             format!("{file}:{}: {}", problem.place.line, self.describe(problem))
@@ -133,6 +133,37 @@ impl Project {
             problems: problems.collect(),
             rules: outcome.rules,
         }
+    }
+
+    /// Gives the application a world, and the front sonar its socket.
+    pub fn in_a_world(&self) {
+        self.write("worlds/hall.xml", "<world_profile/>");
+        self.application("<world><reference>hall.xml</reference></world>");
+        let path = self.folder.path().join("applications/patrol.xml");
+        let text = std::fs::read_to_string(path).unwrap().replace(
+            "<name>front</name>",
+            "<name>front</name><properties><property name='index' type='int'>2</property>\
+             </properties>",
+        );
+        self.write("applications/patrol.xml", &text);
+    }
+
+    /// Loads an injection file, given by what stands in its `fault_injections`.
+    pub fn inject(&self, content: &str) -> (Option<Vec<Injection>>, Vec<String>) {
+        let path = self.write(
+            "injections.xml",
+            &format!("<fault_injections application=\"patrol\">{content}</fault_injections>"),
+        );
+        let outcome = load_injections(&self.specification(), &path);
+        let problems = outcome.problems.iter();
+        let problems = problems.map(|problem| self.describe(problem)).collect();
+        (outcome.injections, problems)
+    }
+
+    pub fn specification(&self) -> ApplicationSpecification {
+        let path = self.folder.path().join("applications/patrol.xml");
+        let application = load_application(&path, &LoadOptions::default());
+        application.specification.expect("a sound application")
     }
 
     /// What `check` says of a file.

@@ -59,7 +59,7 @@ pub(super) fn text(node: &Node<'_>, name: &'static str) -> Option<String> {
 }
 
 /// A time: a number of milliseconds, or a number with its unit.
-pub(super) fn duration(value: &Value<'_>) -> Option<Duration> {
+pub(in crate::readers) fn duration(value: &Value<'_>) -> Option<Duration> {
     let text = value.as_str();
     let unit = UNITS.iter().find(|(unit, _)| text.ends_with(unit));
     let (number, seconds) = match unit {
@@ -83,7 +83,7 @@ pub(super) fn duration(value: &Value<'_>) -> Option<Duration> {
 }
 
 /// A time that is longer than nothing.
-pub(super) fn positive_duration(value: &Value<'_>) -> Option<Duration> {
+pub(in crate::readers) fn positive_duration(value: &Value<'_>) -> Option<Duration> {
     let duration = duration(value)?;
     if duration.is_zero() {
         report(value, "is no time at all", DURATION_HELP);
@@ -93,7 +93,7 @@ pub(super) fn positive_duration(value: &Value<'_>) -> Option<Duration> {
 }
 
 /// A number larger than 0.
-pub(super) fn positive(value: &Value<'_>) -> Option<f64> {
+pub(in crate::readers) fn positive(value: &Value<'_>) -> Option<f64> {
     let number: f64 = value.number()?;
     if number > 0.0 {
         return Some(number);
@@ -103,7 +103,7 @@ pub(super) fn positive(value: &Value<'_>) -> Option<f64> {
 }
 
 /// A whole number of at least `least`.
-pub(super) fn count(value: &Value<'_>, least: u32) -> Option<u32> {
+pub(in crate::readers) fn count(value: &Value<'_>, least: u32) -> Option<u32> {
     let number: u32 = value.number()?;
     if number >= least {
         return Some(number);

@@ -5,7 +5,7 @@ mod declared;
 mod detection;
 mod diagnosis;
 mod handling;
-mod measure;
+pub(super) mod measure;
 mod monitor;
 
 use system_model::profile::Located;

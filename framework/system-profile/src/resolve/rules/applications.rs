@@ -5,10 +5,12 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use system_model::profile::Profile;
+use system_model::profile::{Located, Profile};
 use system_model::specification::ApplicationSpecification;
 
+use crate::problem::Severity;
 use crate::resolve::{Assembly, LoadedFile};
+use crate::suggest::quoted;
 
 /// The applications that rules can name.
 #[derive(Debug)]
@@ -59,20 +61,56 @@ impl Applications {
     }
 }
 
-/// The file of the application that a rule file is about.
-pub(super) fn find(assembly: &Assembly<'_>, rules: &Rc<LoadedFile>, name: &str) -> Option<PathBuf> {
+/// Calls `then` with the application that a rule file or an injection file is about. Where that
+/// cannot be had, a warning says that the file was checked alone.
+pub(in crate::resolve) fn with_application(
+    assembly: &mut Assembly<'_>,
+    file: &Rc<LoadedFile>,
+    name: &Located<String>,
+    then: impl FnOnce(&mut Assembly<'_>, &ApplicationSpecification),
+) {
+    let alone = |why: String| {
+        file.document.report(
+            Severity::Warning,
+            name,
+            format!("{why}; only this file alone was checked"),
+            Some("put the application's folder on the search path, or mend it first".into()),
+        );
+    };
+    let Some(path) = find(assembly, file, &name.value) else {
+        let wanted = quoted(&name.value);
+        return alone(format!("there is no application `{wanted}` ({wanted}.xml)"));
+    };
+    let found = assembly.files.open(&path);
+    let Some(Profile::Application(profile)) = &found.profile else {
+        return alone(format!("{} is no application", path.display()));
+    };
+    let specification = assembly.application(&found, profile);
+    let mut others = assembly.files.in_order().iter();
+    let sound = !assembly.dangling
+        && others.all(|other| Rc::ptr_eq(other, file) || !other.document.has_errors());
+    match specification {
+        Some(specification) if sound => then(assembly, &specification),
+        _ => alone(format!("{} has problems of its own", path.display())),
+    }
+}
+
+/// The file of the application of a name, seen from a rule file.
+fn find(assembly: &Assembly<'_>, rules: &Rc<LoadedFile>, name: &str) -> Option<PathBuf> {
     let mut folders = candidates(rules.document.path());
     folders.extend(assembly.options.search_paths.iter().cloned());
     find_in(&folders, name)
 }
 
-/// Where applications stand, seen from a rule file or a system file.
+/// Where applications stand, seen from a rule file or a system file. Rules may lie in folders of
+/// their own, two deep: `rules/scenarios/unplugged_sonar/`.
 fn candidates(file: &Path) -> Vec<PathBuf> {
     let own = parent(file);
-    ["", "../profiles/applications", "../applications"]
-        .into_iter()
-        .map(|folder| own.join(folder))
-        .collect()
+    let folders = ["", "..", "../.."].map(|up| own.join(up));
+    let beside = folders.iter().flat_map(|folder| {
+        ["../profiles/applications", "../applications"].map(|name| folder.join(name))
+    });
+    std::iter::once(own.clone()).chain(beside).collect()
 }
 
 fn parent(file: &Path) -> PathBuf {

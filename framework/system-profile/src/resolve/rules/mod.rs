@@ -5,7 +5,7 @@
 //! that a rule names, whether a component with a `backup` registers any memory, and whether the
 //! model of a `process_model` is there.
 
-mod applications;
+pub(super) mod applications;
 mod components;
 mod dependencies;
 mod executions;
@@ -185,32 +185,9 @@ pub(crate) fn check_rule_file(assembly: &mut Assembly<'_>, file: &Rc<LoadedFile>
     if name.value.is_empty() {
         return;
     }
-    let alone = |why: String| {
-        file.document.report(
-            Severity::Warning,
-            &name,
-            format!("{why}; only this file alone was checked"),
-            Some("put the application's folder on the search path, or mend it first".into()),
-        );
-    };
-    let Some(path) = applications::find(assembly, file, &name.value) else {
-        let wanted = quoted(&name.value);
-        return alone(format!("there is no application `{wanted}` ({wanted}.xml)"));
-    };
-    let found = assembly.files.open(&path);
-    let Some(Profile::Application(profile)) = &found.profile else {
-        return alone(format!("{} is no application", path.display()));
-    };
-    let specification = assembly.application(&found, profile);
-    let mut others = assembly.files.in_order().iter();
-    let sound = !assembly.dangling
-        && others.all(|other| Rc::ptr_eq(other, file) || !other.document.has_errors());
-    match specification {
-        Some(specification) if sound => {
-            resolve(assembly, &specification, std::slice::from_ref(file));
-        }
-        _ => alone(format!("{} has problems of its own", path.display())),
-    }
+    applications::with_application(assembly, file, &name, |assembly, specification| {
+        resolve(assembly, specification, std::slice::from_ref(file));
+    });
 }
 
 /// Reports what is wrong with the inline rules of an application that has just been assembled.
