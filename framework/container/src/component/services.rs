@@ -17,9 +17,12 @@ use crate::clock::Clock;
 use crate::device::Devices;
 use crate::event_log::EventLog;
 use crate::guard::{ForeignBytes, ForeignBytesMut, ForeignText, HostServices, Request};
+use crate::injection::Injections;
 use crate::library::PortDescription;
 use crate::port::{Receiver, Sent};
+use crate::schedule::BusyTime;
 use crate::supervision::Observations;
+use crate::world::World;
 use fault_manager::DetectorId;
 
 /// What all components of an application share.
@@ -33,6 +36,12 @@ pub struct Environment {
     pub devices: Devices,
     /// What waits for the fault manager.
     pub observations: Observations,
+    /// Faults that are made on purpose.
+    pub injections: Injections,
+    /// The simulated world, if there is one.
+    pub world: Option<Arc<World>>,
+    /// For how long a component keeps its executor busy, in simulated time.
+    pub busy: BusyTime,
 }
 
 /// The detectors of one component that the container itself serves.
@@ -161,6 +170,7 @@ impl Services {
             place: explanation.place,
             thread_lost: false,
             return_code: if panicked { 0 } else { status.0 },
+            lasted: std::time::Duration::ZERO,
             signal: None,
         }
     }

@@ -12,7 +12,8 @@ use fault_manager::{DetectorId, Evidence, Number, Observation, Symptom};
 use system_model::data_type::DataType;
 use system_model::fault::FaultKind;
 
-use crate::port::Receiver;
+use crate::injection::{Injections, Passage};
+use crate::port::{Datum, Receiver};
 use crate::supervision::{Observations, SafetyGate, Sampler};
 
 pub use safe_value::SafeDatum;
@@ -26,6 +27,24 @@ pub struct Circumstances<'component> {
     pub incarnation: u32,
     /// Now, in nanoseconds of the container's clock.
     pub now_ns: u64,
+    /// Faults that are made on purpose, if there are any, with the component's and the port's
+    /// number.
+    pub injections: Option<(&'component Injections, usize, usize)>,
+}
+
+impl Circumstances<'_> {
+    fn distort(&self, datum: &mut Datum) -> Passage {
+        let now = Duration::from_nanos(self.now_ns);
+        self.injections
+            .map_or(Passage::Deliver, |(injections, component, port)| {
+                injections.distort(component, port, datum, now)
+            })
+    }
+
+    fn due(&self) -> Option<Datum> {
+        let (injections, component, port) = self.injections?;
+        injections.due(component, port, Duration::from_nanos(self.now_ns))
+    }
 }
 
 /// Checks of the data of one port, with whom they are reported as.
@@ -162,7 +181,7 @@ fn complain(
 /// What stands between a component and one of its outputs.
 pub struct OutputTap {
     /// The datum on its way.
-    pub scratch: Box<[u8]>,
+    pub scratch: Datum,
     /// Checks.
     pub watch: Option<Watch>,
     /// Process models that want to know.
@@ -173,10 +192,31 @@ impl OutputTap {
     /// For data of `size` bytes.
     pub fn new(size: usize) -> Self {
         Self {
-            scratch: vec![0; size].into_boxed_slice(),
+            scratch: Datum::empty(size),
             watch: None,
             samplers: Vec::new(),
         }
+    }
+
+    /// How often the datum on its way goes on: once, unless a fault is injected.
+    pub fn distort(&mut self, at: Circumstances<'_>) -> usize {
+        if at.injections.is_none() {
+            return 1;
+        }
+        match at.distort(&mut self.scratch) {
+            Passage::Deliver => 1,
+            Passage::DeliverTwice => 2,
+            Passage::Withhold => 0,
+        }
+    }
+
+    /// Puts the next delayed datum on its way, if there is one.
+    pub fn resume(&mut self, at: Circumstances<'_>) -> bool {
+        let Some(delayed) = at.due() else {
+            return false;
+        };
+        self.scratch.copy_from(&delayed);
+        true
     }
 
     /// Looks at the datum on its way; whether it is good. A bad one goes on all the same: who reads
@@ -184,12 +224,12 @@ impl OutputTap {
     #[inline]
     pub fn look(&mut self, at: Circumstances<'_>) -> bool {
         for sampler in &self.samplers {
-            sampler.sample(at.now_ns, &self.scratch);
+            sampler.sample(at.now_ns, self.scratch.bytes());
         }
         let Some(watch) = &mut self.watch else {
             return true;
         };
-        !watch.look(at.now_ns, &self.scratch, at)
+        !watch.look(at.now_ns, self.scratch.bytes(), at)
     }
 }
 
@@ -207,6 +247,15 @@ pub struct InputTap {
     pub samplers: Vec<Sampler>,
     /// When the datum was written that was delivered last.
     delivered_ns: u64,
+    /// A datum that was changed on its way, and whether it is to come once more.
+    changed: Option<(Datum, bool)>,
+}
+
+impl Default for InputTap {
+    /// Without a gate.
+    fn default() -> Self {
+        Self::new(Arc::default())
+    }
 }
 
 impl InputTap {
@@ -219,6 +268,7 @@ impl InputTap {
             maximum_age: None,
             samplers: Vec::new(),
             delivered_ns: 0,
+            changed: None,
         }
     }
 
@@ -228,7 +278,12 @@ impl InputTap {
         source: &'tap mut Receiver,
         at: Circumstances<'_>,
     ) -> Option<(bool, &'tap [u8])> {
-        if let Some(datum) = source.receive() {
+        let next = if at.injections.is_some() {
+            Self::receive_distorted(&mut self.changed, source, at)
+        } else {
+            source.receive()
+        };
+        if let Some(datum) = next {
             let stamp_ns = datum.stamp_ns();
             let watch = self.watch.as_mut();
             let is_good = watch.is_none_or(|watch| !watch.look(stamp_ns, datum.bytes(), at));
@@ -252,5 +307,29 @@ impl InputTap {
             return Some((false, safe.at(at.now_ns)));
         }
         None
+    }
+
+    /// The next datum, as injected faults leave it.
+    #[cold]
+    fn receive_distorted<'tap>(
+        changed: &'tap mut Option<(Datum, bool)>,
+        source: &mut Receiver,
+        at: Circumstances<'_>,
+    ) -> Option<&'tap Datum> {
+        let repeated = changed.as_mut().is_some_and(|it| std::mem::take(&mut it.1));
+        if !repeated {
+            *changed = match at.due() {
+                Some(delayed) => Some((delayed, false)),
+                None => source.receive().and_then(|datum| {
+                    let mut datum = datum.clone();
+                    match at.distort(&mut datum) {
+                        Passage::Deliver => Some((datum, false)),
+                        Passage::DeliverTwice => Some((datum, true)),
+                        Passage::Withhold => None,
+                    }
+                }),
+            };
+        }
+        changed.as_ref().map(|(datum, _)| datum)
     }
 }

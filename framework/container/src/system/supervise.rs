@@ -1,6 +1,7 @@
 //! Puts the fault manager in charge of an assembled application: every rule finds its place.
 
 mod actuators;
+mod injections;
 mod models;
 mod ports;
 mod rhythm;
@@ -19,6 +20,8 @@ use crate::component::{Component, Detectors, Environment};
 use crate::lane::SETUP_TOKEN;
 use crate::library::PortDescription;
 use crate::supervision::{Monitors, Orders, Standbys, Supervisor};
+
+pub(super) use injections::inject;
 
 /// Everything that rules are about.
 struct Subjects<'start> {

@@ -8,7 +8,22 @@ use super::{Detectors, Environment, Services};
 use crate::component::port_end::{Inbox, PortEnd};
 use crate::event_log::Event;
 use crate::guard::{ForeignBytes, ForeignBytesMut};
+use crate::injection::Changed;
 use crate::library::PortDescription;
+
+impl Environment {
+    /// Puts injected faults on record that have begun or ended.
+    pub fn record_injections(&self, changed: &[Changed]) {
+        for change in changed {
+            let event = Event::Injection {
+                fault: change.fault,
+                component: change.component.clone(),
+                change: if change.begins { "begins" } else { "ends" },
+            };
+            self.events.record(self.clock.now_ns(), event);
+        }
+    }
+}
 
 impl Services {
     /// Instance name.
