@@ -3,7 +3,13 @@
 #[path = "support/mod.rs"]
 mod support;
 
+#[path = "behaviour/correlation.rs"]
+mod correlation;
+#[path = "behaviour/debounce.rs"]
+mod debounce;
 #[path = "behaviour/graph.rs"]
 mod graph;
 #[path = "behaviour/ladder.rs"]
 mod ladder;
+#[path = "behaviour/life.rs"]
+mod life;

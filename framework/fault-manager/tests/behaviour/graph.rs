@@ -24,12 +24,11 @@ fn destroyed(component: usize) -> Action {
     Action::Destroy { component }
 }
 
-/// Components a to f, each `(dependent, providers, need, severity)`, which one fails, what comes
-/// down.
-#[test]
-fn exactly_what_depends_comes_down_dependents_first() {
-    type Rules = Vec<(Entity, Vec<Entity>, usize, DependencySeverity)>;
-    let cases: Vec<(&str, Rules, usize, Vec<Action>)> = vec![
+type Rules = Vec<(Entity, Vec<Entity>, usize, DependencySeverity)>;
+
+/// Who needs whom of the components a to f, which one fails, what comes down.
+fn cases() -> Vec<(&'static str, Rules, usize, Vec<Action>)> {
+    vec![
         ("alone", vec![], 2, vec![stopped(2)]),
         (
             "a chain, against the order of indices too",
@@ -91,8 +90,12 @@ fn exactly_what_depends_comes_down_dependents_first() {
             3,
             vec![stopped(0), stopped(1), stopped(2), stopped(3)],
         ),
-    ];
-    for (case, rules, failing, expected) in cases {
+    ]
+}
+
+#[test]
+fn exactly_what_depends_comes_down_dependents_first() {
+    for (case, rules, failing, expected) in cases() {
         let mut scope = application("robot", &["a", "b", "c", "d", "e", "f"]);
         stop_on_any_fault(&mut scope);
         for (dependent, providers, need, severity) in rules {
