@@ -17,6 +17,7 @@ pub mod port;
 pub mod schedule;
 pub mod status;
 pub mod summary;
+pub mod supervision;
 pub mod system;
 pub mod wake;
 pub mod world;

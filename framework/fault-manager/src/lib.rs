@@ -12,7 +12,9 @@
 pub mod detection;
 mod observation;
 mod plan;
+mod stub;
 mod verdict;
+pub use stub::*;
 
 pub use observation::{
     ActionOutcome, Detector, DetectorId, DetectorKind, Evidence, Number, Observation, Symptom,

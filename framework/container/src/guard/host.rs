@@ -94,6 +94,17 @@ impl ForeignBytes {
 }
 
 impl ForeignBytesMut {
+    /// Memory that a component has registered, by its address.
+    pub fn at(address: usize, size: usize) -> Self {
+        let data = ptr::with_exposed_provenance_mut(address);
+        Self { data, size }
+    }
+
+    /// The same memory, for reading.
+    pub fn for_reading(self) -> ForeignBytes {
+        ForeignBytes::new(self.data, self.size)
+    }
+
     pub(super) fn new(data: *mut u8, size: usize) -> Self {
         Self { data, size }
     }

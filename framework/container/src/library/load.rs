@@ -6,7 +6,7 @@ use std::fs;
 use std::io::Write as _;
 use std::mem;
 use std::os::fd::AsRawFd as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use component_abi::{
     ABI_MAGIC, ABI_MAJOR, ABI_MINOR, ENTRY_SYMBOL, Header, LAYOUT_HASH, LibraryDescriptor,
@@ -25,6 +25,8 @@ pub struct LoadedLibrary {
     pub description: ComponentDescription,
     /// Where its code is.
     pub code: CodeRange,
+    /// The file that it is a copy of.
+    pub path: PathBuf,
 }
 
 impl LoadedLibrary {
@@ -62,7 +64,11 @@ impl LoadedLibrary {
                 reason: "it has no executable segment".to_owned(),
             }
         })?;
-        Ok(Self { description, code })
+        Ok(Self {
+            description,
+            code,
+            path: path.to_owned(),
+        })
     }
 }
 

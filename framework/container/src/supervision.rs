@@ -1,0 +1,17 @@
+//! Around the fault manager: what is observed reaches it, what it decides is done.
+
+mod emergency;
+pub(crate) mod obedience;
+mod observations;
+mod orders;
+mod recovery;
+mod standby;
+mod supervisor;
+mod threads;
+
+pub use emergency::{Actuator, CONTROLLED_STOP, Emergency, SafetyGate};
+pub use observations::Observations;
+pub use orders::{Order, Orders, Task};
+pub use standby::Standbys;
+pub use supervisor::Supervisor;
+pub use threads::ManagerThreads;
