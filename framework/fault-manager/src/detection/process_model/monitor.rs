@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use nalgebra::DVector;
+use nalgebra::{DVector, Schur};
 use system_model::process_model::ProcessModel;
 use system_model::rules::{DecisionRule, ProcessModelRule};
 
@@ -61,11 +61,7 @@ impl Monitor {
         let (states, outputs) = (model.a.nrows(), model.outputs());
         let deviations = model.residual_variances().map(f64::sqrt);
         let judge = Judge::new(rule, outputs, model.period, Some(deviations.as_slice()))?;
-        let decays = model
-            .a
-            .complex_eigenvalues()
-            .iter()
-            .all(|pole| pole.norm() < 1.0);
+        let decays = decays(&model);
         Ok(Self {
             is_filtering: rule.method == DecisionRule::ChiSquare,
             outlier: chi_square_quantile(outputs, OUTLIER_QUANTILE),
@@ -239,6 +235,17 @@ impl Monitor {
         self.state
             .gemv(1.0, &self.filter.gain, &self.scratch.residual, 1.0);
     }
+}
+
+/// Whether every state comes right by itself; a model whose poles are not found is not trusted.
+fn decays(model: &DiscreteModel) -> bool {
+    // Eigenvalues of a small matrix take a few iterations each.
+    const ITERATIONS_MAXIMUM: usize = 10_000;
+    let schur = Schur::try_new(model.a.clone(), f64::EPSILON, ITERATIONS_MAXIMUM);
+    schur.is_some_and(|schur| {
+        let poles = schur.complex_eigenvalues();
+        poles.iter().all(|pole| pole.norm() < 1.0)
+    })
 }
 
 /// The model with the parameters of the rule.
