@@ -61,7 +61,7 @@ enum FaultCommand {
         #[arg(long, conflicts_with = "id")]
         all: bool,
     },
-    /// Make something go wrong: '<inject component="camera" fault="hang" at="2s"/>'
+    /// Make something go wrong: `<inject component="camera" fault="hang" at="2s"/>`
     Inject {
         /// The element, as in an injection file; times count from now
         element: String,
