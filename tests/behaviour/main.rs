@@ -9,6 +9,7 @@ mod costs;
 mod events;
 mod execution;
 mod faults;
+mod hangs;
 mod life_cycle;
 mod ports;
 mod readme;

@@ -41,29 +41,6 @@ fn by_a_signal_in_order() {
     }
 }
 
-/// A component that does not return is left behind; the process ends all the same and says so.
-#[test]
-fn although_a_component_hangs() {
-    for callback in ["onExecute", "onStop"] {
-        let application = Application::new()
-            .with(&Member::new("diary", "diary").period(200))
-            .with(
-                &Member::new("hangs", "hangs")
-                    .property("callback", callback)
-                    .property("at_cycle", "1"),
-            );
-        let outcome = application
-            .run_until(|events| events.contains("onExecute"))
-            .ended_well();
-        assert!(outcome.raw_events().contains("left behind"), "{callback}");
-        assert_eq!(
-            outcome.states("diary"),
-            ["READY", "ACTIVE", "INACTIVE", "DESTROYED"],
-            "{callback}: the others stop in order"
-        );
-    }
-}
-
 /// After components have crashed in every way.
 #[test]
 fn after_faults() {

@@ -4,19 +4,21 @@
 
 mod connect;
 mod executors;
+mod factory;
+mod secondary;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use system_model::rules::{FaultRules, Preload};
 use system_model::specification::{
-    ApplicationSpecification, ComponentSpecification, ExecutionKind, Place, PortDirection, PortKind,
+    ApplicationSpecification, ComponentSpecification, Place, PortKind,
 };
 
-use crate::component::{
-    Calls, Component, ComponentCell, DataOutput, Environment, EventOutput, PortEnd, Services,
-};
+pub use factory::{Factory, Variant};
+
+use crate::component::{ComponentCell, Environment};
 use crate::executor::Executor;
-use crate::guard::Guarded;
 use crate::library::{
     ComponentDescription, LibraryError, LibrarySearch, LoadedLibrary, PortDescription, probe,
 };
@@ -70,8 +72,12 @@ pub struct Assembly {
     pub components: Vec<Arc<ComponentCell>>,
     /// What the container knows of them, in the same order.
     pub statuses: Vec<Arc<ComponentStatus>>,
+    /// Where their successors come from, in the same order.
+    pub factories: Vec<Arc<Factory>>,
     /// The executors; every component is in exactly one.
     pub executors: Vec<Executor>,
+    /// The types of all data ports, by component and port.
+    pub interfaces: Vec<Vec<PortDescription>>,
 }
 
 /// Assembles an application.
@@ -80,24 +86,37 @@ pub struct Assembly {
 /// All problems that were found.
 pub fn assemble(
     specification: &ApplicationSpecification,
+    rules: &FaultRules,
     options: &LibraryOptions,
     environment: &Arc<Environment>,
 ) -> Result<Assembly, Vec<AssemblyProblem>> {
-    let libraries = load_all(specification, options)?;
-    let mut problems = compare_ports(specification, &libraries);
-    problems.extend(connect::check(specification, &libraries));
+    let mut libraries = Libraries::new(options);
+    let primaries = libraries.load_all(&specification.components);
+    let secondaries = secondaries(specification, rules, &mut libraries);
+    let mut problems = libraries.problems;
+    let primaries: Vec<LoadedLibrary> = primaries.into_iter().flatten().collect();
+    if problems.is_empty() {
+        for (component, library) in specification.components.iter().zip(&primaries) {
+            problems.extend(compare_ports(component, library));
+        }
+        problems.extend(connect::check(specification, &primaries));
+        problems.extend(secondary::check(specification, &primaries, &secondaries));
+    }
     if !problems.is_empty() {
         return Err(problems);
     }
+    let factories = factories(specification, rules, &primaries, secondaries, environment);
     let mut components = Vec::new();
     let mut statuses = Vec::new();
-    for (number, (component, library)) in
-        specification.components.iter().zip(&libraries).enumerate()
-    {
-        let status = Arc::new(ComponentStatus::new(component.name.clone()));
-        match instantiate(component, library, number, environment, &status) {
-            Ok(cell) => components.push(Arc::new(cell)),
-            Err(problem) => problems.push(problem),
+    for (factory, library) in factories.iter().zip(&primaries) {
+        let name = &factory.variants()[0].specification.name;
+        let status = Arc::new(ComponentStatus::new(name.clone()));
+        match factory.instantiate(0, library, Arc::clone(&status)) {
+            Ok(component) => components.push(Arc::new(ComponentCell::new(component))),
+            Err(error) => problems.push(AssemblyProblem::Resources {
+                component: name.clone(),
+                error,
+            }),
         }
         statuses.push(status);
     }
@@ -105,83 +124,149 @@ pub fn assemble(
         return Err(problems);
     }
     let executors = executors::group(specification, &components);
-    connect::connect(specification, &libraries, &components, &executors);
+    connect::connect(specification, &primaries, &components, &executors);
     Ok(Assembly {
         components,
         statuses,
+        factories,
         executors,
+        interfaces: primaries
+            .into_iter()
+            .map(|library| library.description.ports)
+            .collect(),
     })
 }
 
-/// Every instance gets a copy of its library of its own: see `LoadedLibrary`.
-fn load_all(
+/// The secondaries of every component, each loaded once so that it is known to be usable.
+fn secondaries<'rules>(
     specification: &ApplicationSpecification,
-    options: &LibraryOptions,
-) -> Result<Vec<LoadedLibrary>, Vec<AssemblyProblem>> {
-    let mut loaded = Vec::new();
-    let mut problems = Vec::new();
-    let mut probed: Vec<PathBuf> = Vec::new();
-    for component in &specification.components {
+    rules: &'rules FaultRules,
+    libraries: &mut Libraries<'_>,
+) -> Vec<Vec<secondary::Candidate<'rules>>> {
+    let of = |index: usize| {
+        rules
+            .components
+            .get(index)
+            .map_or(&[][..], |it| &it.secondaries)
+    };
+    (0..specification.components.len())
+        .map(|index| {
+            let candidates = of(index).iter().filter_map(|rule| {
+                let library = libraries.load(&rule.specification)?;
+                Some(secondary::Candidate { rule, library })
+            });
+            candidates.collect()
+        })
+        .collect()
+}
+
+fn factories(
+    specification: &ApplicationSpecification,
+    rules: &FaultRules,
+    primaries: &[LoadedLibrary],
+    secondaries: Vec<Vec<secondary::Candidate<'_>>>,
+    environment: &Arc<Environment>,
+) -> Vec<Arc<Factory>> {
+    let components = specification.components.iter().zip(primaries);
+    let all = components.zip(secondaries).enumerate();
+    all.map(|(number, ((component, library), secondaries))| {
+        let mut variants = vec![Variant {
+            specification: component.clone(),
+            path: library.path.clone(),
+            preload: Preload::Cold,
+        }];
+        variants.extend(secondaries.into_iter().map(|candidate| Variant {
+            specification: candidate.rule.specification.clone(),
+            path: candidate.library.path,
+            preload: candidate.rule.preload,
+        }));
+        let rules = rules.components.get(number).cloned().unwrap_or_default();
+        let environment = Arc::clone(environment);
+        Arc::new(Factory::new(number, variants, rules, environment))
+    })
+    .collect()
+}
+
+/// Loads libraries; every instance gets a copy of its own: see `LoadedLibrary`.
+struct Libraries<'options> {
+    options: &'options LibraryOptions,
+    probed: Vec<PathBuf>,
+    problems: Vec<AssemblyProblem>,
+}
+
+impl<'options> Libraries<'options> {
+    fn new(options: &'options LibraryOptions) -> Self {
+        Self {
+            options,
+            probed: Vec::new(),
+            problems: Vec::new(),
+        }
+    }
+
+    fn load_all(&mut self, components: &[ComponentSpecification]) -> Vec<Option<LoadedLibrary>> {
+        components
+            .iter()
+            .map(|component| self.load(component))
+            .collect()
+    }
+
+    fn load(&mut self, component: &ComponentSpecification) -> Option<LoadedLibrary> {
         let beside_profile = component.profile.parent().map(PathBuf::from);
-        let search = options.search.preceded_by(beside_profile);
+        let search = self.options.search.preceded_by(beside_profile);
         let result = search.find(&component.library).and_then(|path| {
-            if let Some(executable) = &options.probe
-                && !probed.contains(&path)
+            if let Some(executable) = &self.options.probe
+                && !self.probed.contains(&path)
             {
                 probe(executable, &path)?;
-                probed.push(path.clone());
+                self.probed.push(path.clone());
             }
             LoadedLibrary::load(&path)
         });
         match result {
-            Ok(library) => loaded.push(library),
-            Err(error) => problems.push(AssemblyProblem::Library {
-                component: component.name.clone(),
-                place: component.place.clone(),
-                error: Box::new(error),
-            }),
+            Ok(library) => Some(library),
+            Err(error) => {
+                self.problems.push(AssemblyProblem::Library {
+                    component: component.name.clone(),
+                    place: component.place.clone(),
+                    error: Box::new(error),
+                });
+                None
+            }
         }
-    }
-    if problems.is_empty() {
-        Ok(loaded)
-    } else {
-        Err(problems)
     }
 }
 
 /// Compares what profiles declare with what libraries have.
 fn compare_ports(
-    specification: &ApplicationSpecification,
-    libraries: &[LoadedLibrary],
+    component: &ComponentSpecification,
+    library: &LoadedLibrary,
 ) -> Vec<AssemblyProblem> {
     let mut problems = Vec::new();
-    for (component, library) in specification.components.iter().zip(libraries) {
-        for declared in &component.ports {
-            let actual = find_port(&library.description, &declared.name);
-            let mismatch = match actual {
-                None => Some("the library has no such port".to_owned()),
-                Some(actual) if actual.kind != declared.kind => Some(format!(
-                    "in the library it is a {} port",
-                    actual.kind.name()
-                )),
-                Some(actual) if actual.direction != declared.direction => {
-                    Some("in the library it faces the other way".to_owned())
-                }
-                Some(actual) => wrong_type(&declared.data_type, actual),
-            };
-            if let Some(mismatch) = mismatch {
-                problems.push(AssemblyProblem::Connection {
-                    place: declared.place.clone(),
-                    message: format!(
-                        "port '{}' of component '{}': {mismatch}",
-                        declared.name, component.name
-                    ),
-                    help: format!(
-                        "the library has {}",
-                        list(library.description.ports.iter().map(|port| &port.name))
-                    ),
-                });
+    for declared in &component.ports {
+        let actual = find_port(&library.description, &declared.name);
+        let mismatch = match actual {
+            None => Some("the library has no such port".to_owned()),
+            Some(actual) if actual.kind != declared.kind => Some(format!(
+                "in the library it is a {} port",
+                actual.kind.name()
+            )),
+            Some(actual) if actual.direction != declared.direction => {
+                Some("in the library it faces the other way".to_owned())
             }
+            Some(actual) => wrong_type(&declared.data_type, actual),
+        };
+        if let Some(mismatch) = mismatch {
+            problems.push(AssemblyProblem::Connection {
+                place: declared.place.clone(),
+                message: format!(
+                    "port '{}' of component '{}': {mismatch}",
+                    declared.name, component.name
+                ),
+                help: format!(
+                    "the library has {}",
+                    list(library.description.ports.iter().map(|port| &port.name))
+                ),
+            });
         }
     }
     problems
@@ -213,63 +298,5 @@ fn list<Name: AsRef<str>>(names: impl Iterator<Item = Name>) -> String {
         "none".to_owned()
     } else {
         names.join(", ")
-    }
-}
-
-fn instantiate(
-    component: &ComponentSpecification,
-    library: &LoadedLibrary,
-    number: usize,
-    environment: &Arc<Environment>,
-    status: &Arc<ComponentStatus>,
-) -> Result<ComponentCell, AssemblyProblem> {
-    let number = u32::try_from(number).unwrap_or(u32::MAX);
-    let guarded =
-        Guarded::new(library.description.callbacks, library.code, number).map_err(|error| {
-            AssemblyProblem::Resources {
-                component: component.name.clone(),
-                error,
-            }
-        })?;
-    let services = Services::new(
-        Arc::from(component.name.as_str()),
-        status.incarnation(),
-        Arc::clone(environment),
-        library.description.ports.iter().map(unconnected).collect(),
-        component.properties.clone(),
-    );
-    let period = match component.execution.kind {
-        ExecutionKind::Periodic | ExecutionKind::PeriodicShared => component.execution.period,
-        ExecutionKind::Passive | ExecutionKind::Aperiodic => std::time::Duration::ZERO,
-    };
-    Ok(ComponentCell::new(Component::new(
-        guarded,
-        services,
-        Arc::clone(status),
-        period,
-    )))
-}
-
-fn unconnected(port: &PortDescription) -> PortEnd {
-    let size = port
-        .data_type
-        .as_ref()
-        .map_or(0, |data_type| data_type.size);
-    match (port.kind, port.direction) {
-        (PortKind::Data, PortDirection::Input) => PortEnd::DataInput(None, size),
-        (PortKind::Data, PortDirection::Output) => PortEnd::DataOutput(DataOutput {
-            size,
-            connections: Vec::new(),
-        }),
-        (PortKind::Event, PortDirection::Input) => PortEnd::EventInput,
-        (PortKind::Event, PortDirection::Output) => PortEnd::EventOutput(EventOutput {
-            size,
-            connections: Vec::new(),
-        }),
-        (PortKind::Service, PortDirection::Output) => PortEnd::Required(Calls {
-            methods: Vec::new(),
-            provider: None,
-        }),
-        (PortKind::Service, PortDirection::Input) => PortEnd::Provided,
     }
 }

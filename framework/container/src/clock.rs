@@ -23,6 +23,11 @@ impl Clock {
         Self::Simulated(AtomicU64::new(0))
     }
 
+    /// Whether time goes as the schedule says.
+    pub fn is_simulated(&self) -> bool {
+        matches!(self, Self::Simulated(_))
+    }
+
     /// Nanoseconds since the application started.
     pub fn now_ns(&self) -> u64 {
         match self {

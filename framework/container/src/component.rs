@@ -1,34 +1,58 @@
 //! A component instance in the container: life cycle, ports, and what became of it.
 
 mod cell;
+mod checkpoint;
+mod judgement;
+mod limits;
 mod port_end;
 mod services;
+mod succession;
+mod tap;
 
 use std::sync::Arc;
 use std::time::Duration;
 
 use component_abi::Status;
-use system_model::fault::{Fault, FaultKind, SignalEvidence};
+use fault_manager::Observation;
+use system_model::fault::{Fault, FaultKind};
 use system_model::life_cycle::{LifeCycleState, Operation, Transition, transition};
+use system_model::specification::{PortDirection, PortKind};
 
 use crate::event_log::Event;
 use crate::guard::loss::{Loss, LostThread};
-use crate::guard::{Callback, Ending, Exit, Guarded, ServiceCall, Trap};
+use crate::guard::{Callback, Ending, Guarded, Misbehaviour, ServiceCall};
 use crate::status::ComponentStatus;
+use limits::Limits;
 
 pub(crate) use cell::mark_lost;
 pub use cell::{ComponentCell, Entered};
-pub use port_end::{BoundMethod, Calls, DataOutput, EventOutput, Inbox, PortEnd, Provider};
-pub use services::{Environment, Services};
+pub use checkpoint::Checkpoints;
+pub use limits::CallLimits;
+pub use port_end::{
+    BoundMethod, Calls, DataInput, DataOutput, EventOutput, Inbox, PortEnd, Provider,
+};
+pub use services::{Detectors, Environment, Services};
+pub use tap::{InputTap, OutputTap, SafeDatum, Watch};
+
+/// The event port by which a component may hear of an emergency stop.
+const EMERGENCY_STOP: &str = "emergency_stop";
 
 /// One component instance.
 pub struct Component {
     name: Arc<str>,
-    incarnation: u32,
     guarded: Guarded,
     services: Services,
     status: Arc<ComponentStatus>,
     period: Duration,
+    numbering: succession::Numbering,
+    checkpoints: Option<Box<Checkpoints>>,
+    /// Recovered, and no cycle completed since: the fault manager waits for one.
+    unproven: bool,
+    /// Whether the library's constructor has run.
+    constructed: bool,
+    /// Which of the component's libraries it is of: its own (0) or that of a secondary (from 1).
+    variant: usize,
+    limits: Limits,
 }
 
 /// Why an operation did not bring the component where it should be.
@@ -50,12 +74,27 @@ impl Component {
     ) -> Self {
         Self {
             name: Arc::clone(services.name()),
-            incarnation: status.incarnation(),
             guarded,
             services,
             status,
             period,
+            numbering: succession::Numbering::default(),
+            checkpoints: None,
+            unproven: false,
+            constructed: false,
+            variant: 0,
+            limits: CallLimits::default().into(),
         }
+    }
+
+    /// Lets it misbehave when its next callback is due; it does not know.
+    pub fn inject(&mut self, misbehaviour: Option<Misbehaviour>) {
+        self.guarded.inject(misbehaviour);
+    }
+
+    /// Sets how long its callbacks may take; before that the default holds.
+    pub fn set_limits(&mut self, limits: CallLimits) {
+        self.limits = limits.into();
     }
 
     /// Instance name.
@@ -76,6 +115,11 @@ impl Component {
     /// Life-cycle state.
     pub fn state(&self) -> LifeCycleState {
         self.status.state()
+    }
+
+    /// Whether the instance can still be called.
+    pub fn is_alive(&self) -> bool {
+        self.guarded.is_alive()
     }
 
     /// Makes the instance and tells it its period.
@@ -123,6 +167,20 @@ impl Component {
         Ok(())
     }
 
+    /// Runs one callback of the life cycle by itself; the state is the caller's matter.
+    ///
+    /// # Errors
+    /// The fault, if it fails.
+    pub fn call_back(
+        &mut self,
+        callback: Callback,
+        name: &'static str,
+        loss: &Loss,
+    ) -> Result<(), OperationError> {
+        self.run(callback, name, loss)
+            .map_err(OperationError::Failed)
+    }
+
     /// Whether the executor has work for it.
     pub fn is_active(&self) -> bool {
         self.state() == LifeCycleState::Active
@@ -131,51 +189,63 @@ impl Component {
     /// One `onExecute` at `now_ns` of the container's clock.
     #[inline]
     pub fn execute(&mut self, now_ns: u64, loss: &Loss) {
-        self.services.set_cycle_time(now_ns);
+        self.services.begin_cycle(now_ns);
         if self
             .run_or_fail(Callback::Execute, "onExecute", loss)
             .is_ok()
         {
             self.status.count_cycle();
+            if self.unproven {
+                self.prove();
+            }
         }
     }
 
-    /// One `onUpdated`.
+    /// One `onUpdated`, and a checkpoint if one is due.
     #[inline]
     pub fn updated(&mut self, loss: &Loss) {
         // The fault, if any, is on record; the executor goes on with the next component.
-        let _recorded = self.run_or_fail(Callback::Updated, "onUpdated", loss);
+        let recorded = self.run_or_fail(Callback::Updated, "onUpdated", loss);
+        if let Some(checkpoints) = &mut self.checkpoints
+            && recorded.is_ok()
+        {
+            checkpoints.take_if_due(&self.services);
+        }
     }
 
     /// Delivers events and queued calls that have arrived. To a component that is not active
     /// nothing is delivered: what arrives meanwhile is thrown away.
     pub fn deliver(&mut self, now_ns: u64, loss: &Loss) {
-        self.services.set_cycle_time(now_ns);
+        self.services.begin_cycle(now_ns);
         self.look_for_stray_fault();
         for inbox in 0..self.services.inboxes() {
-            while let Some((port, method, message)) = self.services.take_message(inbox) {
-                if self.is_active() {
-                    let size = message.bytes().len();
-                    let (callback, name) = match method {
-                        None => (
-                            Callback::Event(port, message.bytes().as_ptr(), size),
-                            "onEvent",
-                        ),
-                        Some(method) => (
-                            Callback::Call(ServiceCall {
-                                port,
-                                method,
-                                request: message.bytes().as_ptr(),
-                                request_size: size,
-                                reply: std::ptr::null_mut(),
-                                reply_size: 0,
-                            }),
-                            "onCall",
-                        ),
-                    };
-                    let _recorded = self.run_or_fail(callback, name, loss);
+            while let Some((port, method, data, size)) = self.services.take_message(inbox) {
+                if !self.is_active() {
+                    // One that is being recovered will want the message that was in work.
+                    if self.services.has_leftover(inbox) {
+                        break;
+                    }
+                    self.services.message_done(inbox);
+                    continue;
                 }
-                self.services.give_back(inbox, message);
+                let port = self.numbering.port(port);
+                let (callback, name) = match method {
+                    None => (Callback::Event(port, data, size), "onEvent"),
+                    Some(method) => (
+                        Callback::Call(ServiceCall {
+                            port,
+                            method: self.numbering.method(port, method),
+                            request: data,
+                            request_size: size,
+                            reply: std::ptr::null_mut(),
+                            reply_size: 0,
+                        }),
+                        "onCall",
+                    ),
+                };
+                if self.run_or_fail(callback, name, loss).is_ok() || self.is_active() {
+                    self.services.message_done(inbox);
+                }
             }
         }
     }
@@ -185,13 +255,20 @@ impl Component {
         if !self.is_active() {
             return Status::PRECONDITION_NOT_MET;
         }
-        self.services.set_cycle_time(now_ns);
+        self.services.begin_cycle(now_ns);
+        let port = self.numbering.port(call.port);
+        let call = ServiceCall {
+            port,
+            method: self.numbering.method(port, call.method),
+            ..call
+        };
         match self.run(Callback::Call(call), "onCall", loss) {
             Ok(()) => Status::SUCCESS,
             // The callee said no. That is on record, but the callee goes on.
             Err(fault) if fault.kind == FaultKind::ErrorReturn => self.services.last_status(),
-            Err(_fault) => {
+            Err(fault) => {
                 self.enter_state(LifeCycleState::Error);
+                self.report(&fault);
                 Status::INTERNAL_FAULT
             }
         }
@@ -201,18 +278,34 @@ impl Component {
     #[inline]
     pub fn look_for_stray_fault(&mut self) {
         if let Some(trap) = self.guarded.take_stray_fault() {
-            let mut fault = trap_fault(&trap, "a thread of its own", false);
-            fault.message.push_str(": that thread was stopped");
-            self.record(fault);
+            let fault = judgement::stray_fault(&trap);
+            self.record(&fault);
             self.enter_state(LifeCycleState::Error);
+            self.report(&fault);
         }
     }
 
-    /// The thread was lost inside this component.
-    pub fn lost(&mut self, thread: &LostThread) {
+    /// The thread was lost inside this component. Whether that is a symptom, or the failure of
+    /// what the fault manager itself had asked for, is for the caller to say.
+    pub fn lost(&mut self, thread: &LostThread) -> Fault {
         self.guarded.quarantine();
-        self.record(trap_fault(&thread.trap, self.services.callback(), true));
+        let fault = judgement::trap_fault(&thread.trap, self.services.callback(), true);
+        self.record(&fault);
         self.enter_state(LifeCycleState::Error);
+        fault
+    }
+
+    /// Raises the event `emergency_stop` in a component that has a port of this name for it.
+    pub fn tell_emergency_stop(&mut self, loss: &Loss) {
+        let port = self.services.interface().iter().position(|port| {
+            (port.kind, port.direction, port.name.as_str())
+                == (PortKind::Event, PortDirection::Input, EMERGENCY_STOP)
+                && port.data_type.is_none()
+        });
+        if let Some(port) = port.and_then(|port| u32::try_from(port).ok()) {
+            let event = Callback::Event(port, std::ptr::null(), 0);
+            let _recorded = self.run_or_fail(event, "onEvent", loss);
+        }
     }
 
     /// Counts an overrun of its executor.
@@ -220,6 +313,32 @@ impl Component {
         self.status.count_overrun();
     }
 
+    /// The fault manager waits for its next completed cycle.
+    pub fn expect_proof(&mut self) {
+        self.unproven = true;
+    }
+
+    /// Whether no cycle was completed since the last recovery.
+    pub fn is_unproven(&self) -> bool {
+        self.unproven
+    }
+
+    /// Tells the fault manager that the component works again.
+    #[cold]
+    pub fn prove(&mut self) {
+        self.unproven = false;
+        if let Some(component) = self.services.detectors().map(|all| all.component) {
+            self.services
+                .environment()
+                .observations
+                .report(Observation::Works {
+                    component,
+                    incarnation: self.services.incarnation(),
+                });
+        }
+    }
+
+    #[inline]
     fn run_or_fail(
         &mut self,
         callback: Callback,
@@ -227,18 +346,20 @@ impl Component {
         loss: &Loss,
     ) -> Result<(), Box<Fault>> {
         let result = self.run(callback, name, loss);
-        if result.is_err() {
-            self.fail(loss);
+        if let Err(fault) = &result {
+            self.fail(fault, loss);
         }
         result
     }
 
     /// ACTIVE -> ERROR, with `onError` where the instance can still be called.
-    fn fail(&mut self, loss: &Loss) {
-        if self.guarded.is_alive() && self.operate(Operation::StopOnError, loss).is_ok() {
-            return;
+    #[cold]
+    fn fail(&mut self, fault: &Fault, loss: &Loss) {
+        let told = self.guarded.is_alive() && self.operate(Operation::StopOnError, loss).is_ok();
+        if !told {
+            self.enter_state(LifeCycleState::Error);
         }
-        self.enter_state(LifeCycleState::Error);
+        self.report(fault);
     }
 
     /// Runs a callback and records what goes wrong. (The fault is boxed so that success travels
@@ -251,7 +372,8 @@ impl Component {
         loss: &Loss,
     ) -> Result<(), Box<Fault>> {
         self.services.begin(name);
-        let ending = self.guarded.call(callback, loss, &mut self.services);
+        let limit = self.limits.of(callback);
+        let ending = self.guarded.call(callback, limit, loss, &mut self.services);
         match ending {
             Ending::Returned(status) if status.is_success() && !self.services.has_bad_pointer() => {
                 Ok(())
@@ -260,56 +382,20 @@ impl Component {
         }
     }
 
-    #[cold]
-    fn judge(&mut self, ending: Ending, callback: &'static str) -> Box<Fault> {
-        let fault = match ending {
-            Ending::Returned(status) => self.services.returned_fault(status, callback),
-            Ending::Trapped(trap) => trap_fault(&trap, callback, false),
-            Ending::Left(Exit::Abort) => {
-                Fault::new(FaultKind::Abort, callback, "abort()".to_owned())
-            }
-            Ending::Left(Exit::Exit(code)) => {
-                Fault::new(FaultKind::Exit, callback, format!("exit({code})"))
-            }
-            Ending::Gone => Fault::new(
-                FaultKind::ErrorReturn,
-                callback,
-                "called after it had ended".to_owned(),
-            ),
-        };
-        if fault.kind == FaultKind::Panic {
-            self.guarded.quarantine();
-        }
-        self.record(fault.clone());
-        // A component that hands out bad pointers must not be started; one that is active goes to
-        // ERROR by way of `onError`.
-        let unfit = fault.kind == FaultKind::BadPointer && !self.is_active();
-        if unfit || !self.guarded.is_alive() {
-            self.enter_state(LifeCycleState::Error);
-        }
-        Box::new(fault)
-    }
-
-    fn record(&self, fault: Fault) {
-        self.status.count_fault(format!(
-            "{} in {}: {}",
-            fault.kind, fault.callback, fault.message
-        ));
-        let event = Event::fault(&self.name, self.incarnation, &fault);
-        self.services.record(event);
-    }
-
     fn enter_state(&mut self, state: LifeCycleState) {
         let from = self.state();
         if from == state {
             return;
         }
         self.status.set_state(state);
+        if self.status.is_standby() {
+            return;
+        }
         self.services.record(Event::State {
             component: self.name.to_string(),
             from: from.name(),
             to: state.name(),
-            incarnation: self.incarnation,
+            incarnation: self.services.incarnation(),
         });
     }
 }
@@ -328,52 +414,5 @@ fn callbacks(operation: Operation) -> &'static [(Callback, &'static str)] {
             (Callback::Start, "onStart"),
         ],
         Operation::Destroy => &[(Callback::Destroy, "onDestroy")],
-    }
-}
-
-/// The fault that a trap stands for. Addresses that differ from run to run are left out unless
-/// they say something: a null dereference is near zero in every run.
-fn trap_fault(trap: &Trap, callback: &'static str, thread_lost: bool) -> Fault {
-    /// The first page is never mapped: an address in it is a field of a null pointer.
-    const NULL_PAGE: usize = 4096;
-    let kind = match trap.signal {
-        _ if trap.stack_overflow => FaultKind::StackOverflow,
-        libc::SIGBUS => FaultKind::BusError,
-        libc::SIGFPE => FaultKind::DivideByZero,
-        libc::SIGILL | libc::SIGTRAP => FaultKind::IllegalInstruction,
-        libc::SIGABRT => FaultKind::Abort,
-        _ => FaultKind::Segfault,
-    };
-    let signal = signal_name(trap.signal);
-    let mut message = match kind {
-        FaultKind::StackOverflow => "the stack's guard area was hit".to_owned(),
-        _ => signal.to_owned(),
-    };
-    if matches!(kind, FaultKind::Segfault) && trap.address < NULL_PAGE {
-        message = format!("{signal} at address {:#x} (null pointer)", trap.address);
-    }
-    if thread_lost {
-        message.push_str(", outside the component's own code: its thread was set aside");
-    }
-    Fault {
-        thread_lost,
-        signal: Some(SignalEvidence {
-            name: signal_name(trap.signal),
-            code: trap.code,
-            address: trap.address,
-            backtrace: Vec::new(),
-        }),
-        ..Fault::new(kind, callback, message)
-    }
-}
-
-fn signal_name(signal: i32) -> &'static str {
-    match signal {
-        libc::SIGBUS => "SIGBUS",
-        libc::SIGFPE => "SIGFPE",
-        libc::SIGILL => "SIGILL",
-        libc::SIGTRAP => "SIGTRAP",
-        libc::SIGABRT => "SIGABRT",
-        _ => "SIGSEGV",
     }
 }

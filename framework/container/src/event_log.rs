@@ -8,6 +8,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use crossbeam::channel::{Receiver, RecvTimeoutError, Sender, TrySendError, bounded};
+use fault_manager::Verdict;
 use serde::Serialize;
 use system_model::fault::Fault;
 
@@ -62,6 +63,17 @@ pub enum Event {
         /// Whether its thread was lost with it.
         thread_lost: bool,
     },
+    /// A datum or message with which two incarnations died in work is not given to a third.
+    DatumSetAside {
+        /// Instance name of the receiver.
+        component: String,
+        /// The port that it had arrived at.
+        port: String,
+        /// When it was written, in nanoseconds of the container's clock.
+        stamp_ns: u64,
+    },
+    /// What the fault manager made of a fault; the last one of an `id` counts.
+    Verdict(Box<Verdict>),
     /// An executor did not finish its cycle within its period.
     Overrun {
         /// Executor name.

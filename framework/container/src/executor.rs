@@ -4,10 +4,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use fault_manager::ActionId;
 use system_model::specification::{ExecutionKind, SchedulingPolicy};
 
 use crate::component::ComponentCell;
 use crate::lane::Lane;
+use crate::supervision::{Orders, Supervisor, obedience};
 use crate::wake::Wake;
 
 /// How long an executor waits for a component that another thread is inside of (a service call):
@@ -40,6 +42,8 @@ pub struct Executor {
     pub policy: SchedulingPolicy,
     /// What wakes it.
     pub wake: Arc<Wake>,
+    /// What the fault manager asks of it.
+    pub orders: Arc<Orders>,
     /// Its components, in document order.
     pub members: Vec<Member>,
     /// Completed cycles.
@@ -47,6 +51,8 @@ pub struct Executor {
     /// Steps of the current cycle that have begun: first every member executes, then every member
     /// is updated. A cycle that was cut off by a lost thread goes on behind the step it was in.
     step: usize,
+    /// The action whose order is being carried out.
+    obeying: Option<ActionId>,
 }
 
 impl Executor {
@@ -65,10 +71,12 @@ impl Executor {
             period,
             priority,
             policy,
+            orders: Arc::new(Orders::new(Arc::clone(&wake))),
             wake,
             members: Vec::new(),
             cycles: 0,
             step: 0,
+            obeying: None,
         }
     }
 
@@ -79,18 +87,54 @@ impl Executor {
 
     /// One cycle (or the rest of one), at `now_ns` of the container's clock.
     pub fn cycle(&mut self, now_ns: u64, lane: &Lane) {
+        while self.step(now_ns, lane) {}
+    }
+
+    /// One step of a cycle; false when that was the last one.
+    #[inline]
+    pub fn step(&mut self, now_ns: u64, lane: &Lane) -> bool {
         let count = self.members.len();
-        while self.step < 2 * count {
-            let step = self.step;
+        let step = self.step;
+        if step < 2 * count {
             self.step += 1;
             if step < count {
                 self.execute(step, now_ns, lane);
             } else if self.kind != ExecutionKind::Passive {
                 self.update(step - count, lane);
             }
+            return true;
         }
         self.step = 0;
         self.cycles += 1;
+        false
+    }
+
+    /// Carries out what the fault manager has ordered.
+    #[cold]
+    pub fn obey(&mut self, supervisor: &Supervisor, lane: &Lane) {
+        while let Some(order) = self.orders.take() {
+            let member = self
+                .members
+                .iter()
+                .find(|member| usize::try_from(member.number) == Ok(order.component));
+            let Some(member) = member else { continue };
+            self.obeying = order.action;
+            obedience::obey(&order, &member.component, self.kind, supervisor, lane);
+            self.obeying = None;
+            supervisor.attend();
+        }
+    }
+
+    /// The thread was lost; whether that was in an order, whose failure is then on its way to the
+    /// fault manager.
+    pub fn order_was_lost(&mut self, supervisor: Option<&Supervisor>) -> bool {
+        let Some(action) = self.obeying.take() else {
+            return false;
+        };
+        if let Some(supervisor) = supervisor {
+            obedience::lost(action, supervisor);
+        }
+        true
     }
 
     /// Looks after components while nothing is due.

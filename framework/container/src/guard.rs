@@ -6,12 +6,16 @@
 //! coroutine return a record of it, and no frame of ours is skipped. The stack is then quarantined:
 //! never reused, never freed, like a coroutine that is never resumed.
 //!
-//! Survives: traps, aborts, `exit`, stack overflow into the guard area, panics. Does not survive:
-//! memory that the component corrupted before it trapped; a lock of the C library that it held.
+//! Survives: traps, aborts, `exit`, stack overflow into the guard area, panics, and hangs where a
+//! watchdog watches. Does not survive: memory that the component corrupted before it trapped; a
+//! lock of the C library that it held.
 #![allow(unsafe_code)] // the whole point: foreign code, stacks, signals
 
+mod code;
 mod copy;
+mod hang;
 mod host;
+mod injection;
 mod interpose;
 pub mod loss;
 mod registers;
@@ -19,6 +23,7 @@ mod stack;
 mod stray;
 mod table;
 mod trap;
+pub mod watch;
 
 use std::hint::black_box;
 use std::io;
@@ -28,9 +33,13 @@ use std::ptr;
 use component_abi::{Callbacks, Instance, Status};
 use corosensei::{Coroutine, CoroutineResult, Yielder};
 
+pub use code::CodeRange;
+pub use hang::interrupt;
 pub use host::{ForeignBytes, ForeignBytesMut, ForeignText, HostServices, Request};
+pub use injection::Misbehaviour;
 pub use interpose::Exit;
-pub use trap::{CodeRange, Trap};
+pub use trap::Trap;
+pub use watch::CallLimit;
 
 use host::HostSide;
 use loss::Loss;
@@ -114,6 +123,8 @@ enum Input {
     /// Run `onExecute`, `onUpdated`: the two calls of every cycle.
     Execute,
     Updated,
+    /// Misbehave as the host side says, then perhaps run the callback that it names.
+    Injected,
     /// The answer to what was asked is in the host side.
     Reply,
     End,
@@ -221,11 +232,13 @@ impl Guarded {
     }
 
     /// Runs a callback to its end; host services that it asks for are answered by `services`.
-    /// `loss` is where this thread leaves word if it is lost inside.
+    /// `loss` is where this thread leaves word of what it is in, and if it is lost inside. After
+    /// `limit` the watchdog breaks the callback off, if one watches over `loss`.
     #[inline]
     pub fn call<Services: HostServices>(
         &mut self,
         callback: Callback,
+        limit: CallLimit,
         loss: &Loss,
         services: &mut Services,
     ) -> Ending {
@@ -238,6 +251,10 @@ impl Guarded {
         let services: *mut Services = services;
         self.side.set_services(services);
         let mut input = match callback {
+            injected if self.side.has_injection() => {
+                self.side.set_callback(injected);
+                Input::Injected
+            }
             Callback::Execute => Input::Execute,
             Callback::Updated => Input::Updated,
             other => {
@@ -245,6 +262,7 @@ impl Guarded {
                 Input::Callback
             }
         };
+        let watched = loss.watch().enter(limit);
         let ending = loop {
             match coroutine.resume(input) {
                 CoroutineResult::Yield(yielded) => match yielded.what {
@@ -252,7 +270,9 @@ impl Guarded {
                     What::Asked => {
                         // SAFETY: the component is suspended, so nobody else uses the services.
                         let services = unsafe { &mut *services };
+                        loss.watch().pause(&watched);
                         self.side.set_reply(services.answer(self.side.request()));
+                        loss.watch().resume(&watched);
                         input = Input::Reply;
                     }
                     What::Left => break Ending::Left(self.side.exit()),
@@ -261,11 +281,18 @@ impl Guarded {
                 CoroutineResult::Return(Ended::Asked) => break Ending::Gone,
             }
         };
+        loss.watch().leave(watched);
         trap::set_current(self.frame.outer);
         if !matches!(ending, Ending::Returned(_)) {
             self.quarantine();
         }
         ending
+    }
+
+    /// Lets the component misbehave when its next callback is due, whichever that is; `None` takes
+    /// that back. It happens once.
+    pub fn inject(&mut self, misbehaviour: Option<Misbehaviour>) {
+        self.side.set_injection(misbehaviour);
     }
 
     /// Never call this instance again; what it holds stays as it is. Also for an instance whose
@@ -307,6 +334,10 @@ fn serve(
             Input::Execute => plain(callbacks.on_execute, side.instance()),
             Input::Updated => plain(callbacks.on_updated, side.instance()),
             Input::Callback => invoke(side, callbacks, side.callback()),
+            Input::Injected => side
+                .take_injection()
+                .and_then(|misbehaviour| injection::misbehave(side, misbehaviour))
+                .unwrap_or_else(|| invoke(side, callbacks, side.callback())),
             // A reply without a question does not happen; ending is the safe answer.
             Input::Reply | Input::End => return Ended::Asked,
         };

@@ -7,12 +7,13 @@
 
 use std::cell::{RefCell, UnsafeCell};
 use std::io;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
+use std::sync::{Arc, Condvar, Mutex, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
 
 use crate::guard::Guarded;
 use crate::guard::loss::{Loss, LostThread, losses, wait_for_loss, wake_spare};
+use crate::watchdog;
 
 /// The token under which components are entered while they are assembled, before any lane runs.
 pub const SETUP_TOKEN: u32 = 1;
@@ -113,8 +114,14 @@ impl Lane {
         }
     }
 
+    /// Whether it has ended.
+    fn is_done(&self) -> bool {
+        *self.done.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Works on the calling thread.
     fn drive(self: &Arc<Self>, lost: Option<&LostThread>) {
+        self.loss.watch().attach();
         CURRENT.set(Some(Arc::clone(self)));
         // SAFETY: this thread is the lane's only one; see the `Sync` argument.
         let work = unsafe { &mut *self.work.get() };
@@ -122,16 +129,19 @@ impl Lane {
             work.after_loss(lost);
         }
         work.run(self);
+        self.loss.watch().detach();
         CURRENT.set(None);
         *self.done.lock().unwrap_or_else(PoisonError::into_inner) = true;
         self.done_changed.notify_all();
     }
 }
 
-/// The lanes of an application, and the spare thread that stands by for them.
+/// The lanes of an application, the spare thread that stands by for them, and the watchdog.
 #[derive(Default)]
 pub struct Crew {
+    /// Those that have not ended.
     lanes: Mutex<Vec<Arc<Lane>>>,
+    started: AtomicUsize,
     dismissed: AtomicBool,
 }
 
@@ -139,13 +149,17 @@ pub struct Crew {
 const SPARE_PERIOD: Duration = Duration::from_millis(500);
 
 impl Crew {
-    /// A crew with its spare thread standing by.
+    /// A crew with its spare thread standing by, watched over.
     ///
     /// # Errors
     /// If the system refuses a thread.
     pub fn new() -> io::Result<Arc<Self>> {
         let crew = Arc::new(Self::default());
         crew.spawn_spare()?;
+        let watched = Arc::clone(&crew);
+        std::thread::Builder::new()
+            .name("watchdog".to_owned())
+            .spawn(move || watchdog::watch_over(&watched))?;
         Ok(crew)
     }
 
@@ -158,7 +172,11 @@ impl Crew {
         lane: &Arc<Lane>,
         prepare: impl FnOnce() + Send + 'static,
     ) -> io::Result<()> {
-        self.lanes().push(Arc::clone(lane));
+        let mut lanes = self.lanes();
+        lanes.retain(|lane| !lane.is_done());
+        lanes.push(Arc::clone(lane));
+        drop(lanes);
+        self.started.fetch_add(1, Ordering::Release);
         let lane = Arc::clone(lane);
         std::thread::Builder::new()
             .name(lane.name.clone())
@@ -176,6 +194,29 @@ impl Crew {
     pub fn dismiss(&self) {
         self.dismissed.store(true, Ordering::Release);
         wake_spare();
+    }
+
+    /// Whether the crew was sent home.
+    pub(crate) fn is_dismissed(&self) -> bool {
+        self.dismissed.load(Ordering::Acquire)
+    }
+
+    /// How many lanes have been started.
+    pub(crate) fn lanes_started(&self) -> usize {
+        self.started.load(Ordering::Acquire)
+    }
+
+    /// Shows the lanes that have not ended, and says how many had been started at least; `None` if
+    /// somebody else looks at them now.
+    pub(crate) fn with_lanes(&self, look: impl FnOnce(&[Arc<Lane>])) -> Option<usize> {
+        let started = self.lanes_started();
+        let lanes = match self.lanes.try_lock() {
+            Ok(lanes) => lanes,
+            Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
+            Err(TryLockError::WouldBlock) => return None,
+        };
+        look(&lanes);
+        Some(started)
     }
 
     fn lanes(&self) -> std::sync::MutexGuard<'_, Vec<Arc<Lane>>> {
@@ -196,7 +237,7 @@ impl Crew {
 
     /// Waits for a loss, takes that lane over; another spare takes this one's place.
     fn stand_by(self: &Arc<Self>) {
-        while !self.dismissed.load(Ordering::Acquire) {
+        while !self.is_dismissed() {
             let seen = losses();
             let lost = self
                 .lanes()

@@ -19,6 +19,8 @@ pub mod port;
 pub mod schedule;
 pub mod status;
 pub mod summary;
+pub mod supervision;
 pub mod system;
 pub mod wake;
+mod watchdog;
 pub mod world;

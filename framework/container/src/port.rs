@@ -6,10 +6,11 @@ mod mailbox;
 pub mod overwriting_queue;
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 
 use system_model::specification::QueuePolicy;
 
+use crossbeam::utils::CachePadded;
 pub use datum::Datum;
 pub use mailbox::{MailReceiver, MailSender, Sent, mailbox};
 use overwriting_queue::{Reader, Writer};
@@ -17,21 +18,50 @@ use overwriting_queue::{Reader, Writer};
 /// The writing end of a connection.
 pub struct Sender {
     buffer: SendBuffer,
-    counts: Arc<Counts>,
+    shared: Arc<Shared>,
+    /// Where the time of the newest datum is left, if somebody wants to know its age.
+    newest: Option<Arc<Newest>>,
 }
 
 /// The reading end of a connection.
 pub struct Receiver {
     buffer: ReceiveBuffer,
-    counts: Arc<Counts>,
+    shared: Arc<Shared>,
+    /// The datum taken last is to be taken once more: who had it in work died of something.
+    again: bool,
+    /// Incarnations that died with the datum taken last in work.
+    deaths: u32,
 }
 
+/// When the newest datum of a connection was written, in nanoseconds of the container's clock; 0
+/// before the first one. On a cache line of its own: it is written with every datum.
+pub type Newest = CachePadded<AtomicU64>;
+
+/// A datum is given to a second incarnation when the first one died of it or of something else;
+/// after that it is the datum.
+pub const MOST_DEATHS: u32 = 2;
+
+/// What both ends share; hardly ever written.
 #[derive(Debug, Default)]
-struct Counts {
-    /// By the writer, because the queue was full.
+struct Shared {
+    /// Dropped by the writer, because the queue was full.
     overwritten: AtomicU64,
-    /// By the reader, because its stack was full.
+    /// Dropped by the reader, because its stack was full.
     forgotten: AtomicU64,
+    /// What older incarnations of the writer have sent is not delivered any more.
+    accepted: AtomicU32,
+}
+
+/// What becomes of a datum whose reader died.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Leftover {
+    /// The next incarnation gets it again, unless there is a newer one by then.
+    Again,
+    /// It is set aside: a second incarnation has died of it.
+    SetAside {
+        /// When it was written.
+        stamp_ns: u64,
+    },
 }
 
 enum SendBuffer {
@@ -49,7 +79,7 @@ enum ReceiveBuffer {
 pub fn connection(policy: QueuePolicy, queue_size: usize, size: usize) -> (Sender, Receiver) {
     let empty = Datum::empty(size);
     let queue_size = queue_size.max(1);
-    let counts = Arc::new(Counts::default());
+    let shared = Arc::new(Shared::default());
     let (send, receive) = match policy {
         QueuePolicy::Last => {
             let (input, output) = triple_buffer::triple_buffer(&empty);
@@ -64,6 +94,7 @@ pub fn connection(policy: QueuePolicy, queue_size: usize, size: usize) -> (Sende
             let receive = ReceiveBuffer::Lifo {
                 arrivals,
                 pile: Pile {
+                    taken: empty.clone(),
                     slots: vec![empty; queue_size],
                     filled: 0,
                 },
@@ -73,16 +104,30 @@ pub fn connection(policy: QueuePolicy, queue_size: usize, size: usize) -> (Sende
     };
     let sender = Sender {
         buffer: send,
-        counts: Arc::clone(&counts),
+        shared: Arc::clone(&shared),
+        newest: None,
     };
     let receiver = Receiver {
         buffer: receive,
-        counts,
+        shared,
+        again: false,
+        deaths: 0,
     };
     (sender, receiver)
 }
 
 impl Sender {
+    /// From now on only what incarnation `incarnation` of the writer and later ones send is
+    /// delivered; what older ones have left in the queue is not.
+    pub fn succeed(&self, incarnation: u32) {
+        self.shared.accepted.store(incarnation, Ordering::Relaxed);
+    }
+
+    /// Where the time of the newest datum can be read from now on.
+    pub fn watch(&mut self) -> Arc<Newest> {
+        Arc::clone(self.newest.get_or_insert_default())
+    }
+
     /// Sends a datum that `fill` writes; nothing is sent if it answers false. Never waits.
     #[inline]
     pub fn send(
@@ -99,13 +144,16 @@ impl Sender {
             return false;
         }
         datum.set_origin(stamp_ns, incarnation);
+        if let Some(newest) = &self.newest {
+            newest.store(stamp_ns.max(1), Ordering::Relaxed);
+        }
         match &mut self.buffer {
             SendBuffer::Last(input) => {
                 input.publish();
             }
             SendBuffer::Queue(writer) => {
                 if writer.publish() {
-                    increase(&self.counts.overwritten);
+                    increase(&self.shared.overwritten);
                 }
             }
         }
@@ -117,23 +165,73 @@ impl Receiver {
     /// The next datum by the connection's policy, if one has arrived since the last was taken.
     #[inline]
     pub fn receive(&mut self) -> Option<&Datum> {
+        self.advance().then(|| self.current())
+    }
+
+    /// What becomes of the datum that was taken last, now that the incarnation that took it died.
+    pub fn leave(&mut self) -> Leftover {
+        self.deaths += 1;
+        if self.deaths < MOST_DEATHS {
+            self.again = true;
+            return Leftover::Again;
+        }
+        self.again = false;
+        Leftover::SetAside {
+            stamp_ns: self.current().stamp_ns(),
+        }
+    }
+
+    /// Goes on to the next datum that may be delivered; false if there is none.
+    #[inline]
+    fn advance(&mut self) -> bool {
+        loop {
+            let (fresh, found) = self.take_any();
+            if !found {
+                return false;
+            }
+            if fresh {
+                self.deaths = 0;
+            }
+            let accepted = self.shared.accepted.load(Ordering::Relaxed);
+            if self.current().incarnation() >= accepted {
+                return true;
+            }
+        }
+    }
+
+    /// Whether a datum was taken that had not been taken before, and whether any was.
+    #[inline]
+    fn take_any(&mut self) -> (bool, bool) {
+        let again = std::mem::take(&mut self.again);
         match &mut self.buffer {
             ReceiveBuffer::Last(output) => {
-                if output.update() {
-                    Some(output.output_buffer())
-                } else {
-                    None
-                }
+                let fresh = output.update();
+                (fresh, fresh || again)
             }
-            ReceiveBuffer::Fifo(reader) => reader.take(),
+            _ if again => (false, true),
+            ReceiveBuffer::Fifo(reader) => {
+                let found = reader.take().is_some();
+                (found, found)
+            }
             ReceiveBuffer::Lifo { arrivals, pile } => {
                 while let Some(datum) = arrivals.take() {
                     if pile.push(datum) {
-                        increase(&self.counts.forgotten);
+                        increase(&self.shared.forgotten);
                     }
                 }
-                pile.pop()
+                let found = pile.pop();
+                (found, found)
             }
+        }
+    }
+
+    /// The datum that was taken last.
+    #[inline]
+    fn current(&self) -> &Datum {
+        match &self.buffer {
+            ReceiveBuffer::Last(output) => output.output_buffer(),
+            ReceiveBuffer::Fifo(reader) => reader.last(),
+            ReceiveBuffer::Lifo { pile, .. } => &pile.taken,
         }
     }
 
@@ -144,8 +242,8 @@ impl Receiver {
 
     /// Data dropped because the reader did not keep up.
     pub fn dropped(&self) -> u64 {
-        let counts = &self.counts;
-        counts.overwritten.load(Ordering::Relaxed) + counts.forgotten.load(Ordering::Relaxed)
+        let shared = &self.shared;
+        shared.overwritten.load(Ordering::Relaxed) + shared.forgotten.load(Ordering::Relaxed)
     }
 }
 
@@ -153,6 +251,8 @@ impl Receiver {
 struct Pile {
     slots: Vec<Datum>,
     filled: usize,
+    /// What was taken last.
+    taken: Datum,
 }
 
 impl Pile {
@@ -169,9 +269,13 @@ impl Pile {
         full
     }
 
-    fn pop(&mut self) -> Option<&Datum> {
-        self.filled = self.filled.checked_sub(1)?;
-        self.slots.get(self.filled)
+    fn pop(&mut self) -> bool {
+        let Some(top) = self.filled.checked_sub(1) else {
+            return false;
+        };
+        self.filled = top;
+        std::mem::swap(&mut self.taken, &mut self.slots[top]);
+        true
     }
 }
 
@@ -227,6 +331,57 @@ mod tests {
             assert!(!sender.send(0, 1, |_bytes| false));
             assert!(receiver.receive().is_none());
         }
+    }
+
+    #[test]
+    fn what_an_older_incarnation_sent_is_not_delivered() {
+        for policy in [QueuePolicy::Last, QueuePolicy::Fifo, QueuePolicy::Lifo] {
+            let (mut sender, mut receiver) = connection(policy, 4, 8);
+            put(&mut sender, 1);
+            sender.succeed(2);
+            assert!(receiver.receive().is_none(), "{policy:?}");
+            put(&mut sender, 2);
+            assert!(
+                receiver.receive().is_none(),
+                "{policy:?}: still the old one"
+            );
+            let sent = sender.send(3, 2, |bytes| {
+                bytes.fill(3);
+                true
+            });
+            assert!(sent);
+            assert_eq!(all(&mut receiver), [3], "{policy:?}");
+        }
+    }
+
+    #[test]
+    fn a_datum_is_given_to_a_second_incarnation_and_to_no_third() {
+        for policy in [QueuePolicy::Last, QueuePolicy::Fifo, QueuePolicy::Lifo] {
+            let (mut sender, mut receiver) = connection(policy, 4, 8);
+            put(&mut sender, 7);
+            assert!(receiver.receive().is_some());
+            assert_eq!(receiver.leave(), Leftover::Again, "{policy:?}");
+            assert_eq!(all(&mut receiver), [7], "{policy:?}: once more, only once");
+            assert_eq!(
+                receiver.leave(),
+                Leftover::SetAside { stamp_ns: 7 },
+                "{policy:?}"
+            );
+            assert!(receiver.receive().is_none(), "{policy:?}");
+            put(&mut sender, 8);
+            assert_eq!(all(&mut receiver), [8], "{policy:?}");
+            assert_eq!(receiver.leave(), Leftover::Again, "{policy:?}: another one");
+        }
+    }
+
+    #[test]
+    fn a_newer_last_value_wins_over_one_that_was_in_work() {
+        let (mut sender, mut receiver) = connection(QueuePolicy::Last, 1, 8);
+        put(&mut sender, 1);
+        assert!(receiver.receive().is_some());
+        receiver.leave();
+        put(&mut sender, 2);
+        assert_eq!(all(&mut receiver), [2]);
     }
 
     #[test]

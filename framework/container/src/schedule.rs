@@ -11,6 +11,7 @@ use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::guard::loss::LostThread;
 use crate::lane::{Lane, Work};
+use crate::supervision::Supervisor;
 use crate::wake::Wake;
 use crate::world::World;
 
@@ -27,6 +28,7 @@ pub struct RealTime {
     executor: Executor,
     components: Arc<[Arc<ComponentCell>]>,
     environment: Arc<Environment>,
+    supervisor: Arc<Supervisor>,
     /// When the next cycle (or the one that was cut off) is or was due.
     release_ns: u64,
 }
@@ -36,12 +38,13 @@ impl RealTime {
     pub fn new(
         executor: Executor,
         components: Arc<[Arc<ComponentCell>]>,
-        environment: Arc<Environment>,
+        supervisor: Arc<Supervisor>,
     ) -> Self {
         Self {
             executor,
             components,
-            environment,
+            environment: Arc::clone(supervisor.environment()),
+            supervisor,
             release_ns: 0,
         }
     }
@@ -56,14 +59,19 @@ impl RealTime {
             if lane.is_stopping() {
                 return false;
             }
+            self.serve(lane);
             let now_ns = self.environment.clock.now_ns();
             let periodic = self.period_ns() > 0;
             if periodic && now_ns >= self.release_ns {
                 return true;
             }
-            if !periodic && self.executor.wake.take() {
+            // Events and orders wake a periodic executor too: the former wait for its next cycle.
+            if self.executor.wake.take() && !periodic {
                 self.release_ns = now_ns;
                 return true;
+            }
+            if !self.executor.orders.is_empty() {
+                continue;
             }
             let sleep = if periodic {
                 Duration::from_nanos(self.release_ns - now_ns)
@@ -74,6 +82,15 @@ impl RealTime {
             if !periodic {
                 self.executor.look_after(lane);
             }
+        }
+    }
+
+    /// Lets the fault manager see what happened, and does what it asks.
+    #[inline]
+    fn serve(&mut self, lane: &Lane) {
+        self.supervisor.attend();
+        if !self.executor.orders.is_empty() {
+            self.executor.obey(&self.supervisor, lane);
         }
     }
 
@@ -108,13 +125,16 @@ impl Work for RealTime {
         }
         while self.executor.is_in_cycle() || self.wait(lane) {
             let now_ns = self.environment.clock.now_ns();
-            self.executor.cycle(now_ns, lane);
+            while self.executor.step(now_ns, lane) {
+                self.serve(lane);
+            }
             self.finish_cycle(lane);
         }
     }
 
     fn after_loss(&mut self, lost: &LostThread) {
-        mark_lost(&self.components, lost);
+        let reported = self.executor.order_was_lost(Some(&self.supervisor));
+        mark_lost(&self.components, lost, reported);
     }
 
     fn waker(&self) -> Option<Arc<Wake>> {
@@ -130,7 +150,10 @@ pub struct Simulated {
     due_ns: Vec<u64>,
     /// The one that was running when a thread was lost.
     running: Option<usize>,
+    /// The one that was carrying out an order then.
+    obeying: Option<usize>,
     environment: Arc<Environment>,
+    supervisor: Arc<Supervisor>,
     world: Option<Arc<World>>,
     end_ns: u64,
 }
@@ -140,7 +163,7 @@ impl Simulated {
     pub fn new(
         mut executors: Vec<Executor>,
         components: Arc<[Arc<ComponentCell>]>,
-        environment: Arc<Environment>,
+        supervisor: Arc<Supervisor>,
         world: Option<Arc<World>>,
         end: Option<Duration>,
     ) -> Self {
@@ -150,7 +173,9 @@ impl Simulated {
             executors,
             components,
             running: None,
-            environment,
+            obeying: None,
+            environment: Arc::clone(supervisor.environment()),
+            supervisor,
             world,
             end_ns: end.map_or(u64::MAX, nanoseconds),
         }
@@ -178,13 +203,26 @@ impl Simulated {
         if !executor.is_in_cycle() {
             executor.wake.take();
         }
-        executor.cycle(now_ns, lane);
+        while self.executors[index].step(now_ns, lane) {
+            self.serve(lane);
+        }
+        let executor = &self.executors[index];
         self.due_ns[index] = if executor.kind.has_period() {
             self.due_ns[index] + nanoseconds(executor.period)
         } else {
             now_ns + SIMULATED_CYCLE_NS
         };
         self.running = None;
+    }
+
+    /// Lets the fault manager see what happened, and does at once what it asks.
+    fn serve(&mut self, lane: &Lane) {
+        self.supervisor.attend();
+        while let Some(index) = (self.executors.iter()).position(|one| !one.orders.is_empty()) {
+            self.obeying = Some(index);
+            self.executors[index].obey(&self.supervisor, lane);
+            self.obeying = None;
+        }
     }
 
     /// Moves time to `time_ns`; false if the run ends before.
@@ -210,7 +248,20 @@ impl Work for Simulated {
             if lane.is_stopping() {
                 return;
             }
-            let Some((time_ns, index)) = self.next() else {
+            self.serve(lane);
+            let next = self.next();
+            // What time brings comes before what is executed at that time.
+            let tick_ns = self.supervisor.due_ns();
+            if let Some(tick_ns) = tick_ns
+                && next.is_none_or(|(time_ns, _)| tick_ns <= time_ns)
+            {
+                if tick_ns > self.environment.clock.now_ns() && !self.advance(tick_ns) {
+                    return;
+                }
+                self.supervisor.tick();
+                continue;
+            }
+            let Some((time_ns, index)) = next else {
                 // Nothing will ever happen by itself: only the world moves until the end.
                 self.idle_until_end(lane);
                 return;
@@ -223,7 +274,11 @@ impl Work for Simulated {
     }
 
     fn after_loss(&mut self, lost: &LostThread) {
-        mark_lost(&self.components, lost);
+        let index = self.obeying.take();
+        let executor = index.and_then(|index| self.executors.get_mut(index));
+        let reported =
+            executor.is_some_and(|executor| executor.order_was_lost(Some(&self.supervisor)));
+        mark_lost(&self.components, lost, reported);
     }
 }
 

@@ -16,6 +16,8 @@ pub struct ComponentStatus {
     overruns: AtomicU64,
     faults: AtomicU64,
     last_fault: Mutex<Option<String>>,
+    /// Of an instance that stands by, and is not seen.
+    standby: bool,
 }
 
 const STATES: [LifeCycleState; 6] = [
@@ -38,7 +40,21 @@ impl ComponentStatus {
             overruns: AtomicU64::new(0),
             faults: AtomicU64::new(0),
             last_fault: Mutex::new(None),
+            standby: false,
         }
+    }
+
+    /// An instance that stands by for the component of this name.
+    pub fn standby(name: String) -> Self {
+        Self {
+            standby: true,
+            ..Self::new(name)
+        }
+    }
+
+    /// Whether it is one that stands by.
+    pub fn is_standby(&self) -> bool {
+        self.standby
     }
 
     /// Life-cycle state.
@@ -55,6 +71,10 @@ impl ComponentStatus {
     /// Which instance of this component it is, counted from 1.
     pub fn incarnation(&self) -> u32 {
         self.incarnation.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn set_incarnation(&self, incarnation: u32) {
+        self.incarnation.store(incarnation, Ordering::Relaxed);
     }
 
     /// Completed `onExecute`.

@@ -3,6 +3,7 @@
 mod agenda;
 mod real_time;
 mod stages;
+mod supervise;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,6 +12,8 @@ use std::time::{Duration, Instant};
 
 use crossbeam::channel::Sender;
 use robot_simulation::Simulation;
+use system_model::process_model::ProcessModel;
+use system_model::rules::FaultRules;
 use system_model::specification::ApplicationSpecification;
 
 use crate::assembly::{Assembly, AssemblyProblem, LibraryOptions, assemble};
@@ -21,14 +24,17 @@ use crate::event_log::{Event, EventLog, EventWriter};
 use crate::lane::{Crew, Lane, remaining};
 use crate::status::ComponentStatus;
 use crate::summary::{ApplicationSummary, ComponentSummary, Summary, application_state};
+use crate::supervision::{ManagerThreads, Observations, Supervisor};
 use crate::world::World;
 
 pub use agenda::Failure;
 use agenda::LeftBehind;
 use real_time::WorldThread;
+use supervise::supervise;
 
-/// Loading devices, models and maps takes time; a component that is not up by then hangs.
-const BRING_UP_LIMIT: Duration = Duration::from_secs(30);
+/// Loading devices, models and maps takes time; what the watchdog cannot break off by then hangs.
+/// Half as long again as one callback of bringing up may take, so that the watchdog is first.
+const BRING_UP_LIMIT: Duration = Duration::from_secs(45);
 
 /// In which everything must have stopped: what a person waits after Ctrl-C before pulling the plug.
 const STOP_LIMIT: Duration = Duration::from_secs(3);
@@ -67,6 +73,10 @@ pub struct RunOptions {
     pub echo: Option<Sender<(u64, Event)>>,
     /// How libraries are found and loaded.
     pub libraries: LibraryOptions,
+    /// What counts as a fault and what is done about it; none: the defaults.
+    pub rules: FaultRules,
+    /// The process models that the rules name, by the name that they use.
+    pub models: Vec<(String, ProcessModel)>,
 }
 
 /// Why an application did not start. Nothing of it runs.
@@ -118,6 +128,8 @@ pub struct System {
     /// Each with the numbers of the components that it runs.
     lanes: Vec<(Arc<Lane>, Vec<usize>)>,
     left_behind: LeftBehind,
+    supervisor: Arc<Supervisor>,
+    manager_threads: ManagerThreads,
     writer: EventWriter,
 }
 
@@ -148,13 +160,28 @@ impl System {
             },
             events,
             devices: Devices::new(world.clone()),
+            observations: Observations::default(),
         });
-        let assembly = assemble(specification, &options.libraries, &environment)
-            .map_err(StartError::Assembly)?;
+        let assembly = assemble(
+            specification,
+            &options.rules,
+            &options.libraries,
+            &environment,
+        )
+        .map_err(StartError::Assembly)?;
+        let (supervisor, wanted) = supervise(
+            specification,
+            &options.rules,
+            &options.models,
+            &assembly,
+            &environment,
+        )
+        .map_err(StartError::Assembly)?;
         let Assembly {
             components,
             statuses,
             executors,
+            ..
         } = assembly;
         let mut system = Self {
             application: specification.name.clone(),
@@ -167,6 +194,8 @@ impl System {
             statuses,
             crew: Crew::new()?,
             lanes: Vec::new(),
+            supervisor: Arc::new(supervisor),
+            manager_threads: ManagerThreads::default(),
             writer,
         };
         if let Err(error) = system.bring_up() {
@@ -174,7 +203,7 @@ impl System {
             let _log_error = system.close();
             return Err(error);
         }
-        if let Err(error) = system.launch(executors) {
+        if let Err(error) = system.launch(executors, wanted) {
             let _nothing_to_sum_up = system.stop("start_refused");
             return Err(error);
         }
@@ -189,6 +218,11 @@ impl System {
     /// Time by the application's clock.
     pub fn now(&self) -> Duration {
         self.environment.clock.now()
+    }
+
+    /// The fault manager's shell.
+    pub fn supervisor(&self) -> &Arc<Supervisor> {
+        &self.supervisor
     }
 
     /// The world, if there is one.
@@ -220,6 +254,7 @@ impl System {
     pub fn stop(mut self, reason: &'static str) -> (Summary, Option<std::io::Error>) {
         let summary = self.summary(reason);
         let deadline = Instant::now() + STOP_LIMIT;
+        self.manager_threads.stop(&self.supervisor);
         for (lane, _) in &self.lanes {
             lane.stop();
         }

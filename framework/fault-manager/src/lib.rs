@@ -9,12 +9,31 @@
 //! severity of the application, emergency stop. Ahn et al. (2012), sections 2.2 to 3.4.
 #![forbid(unsafe_code)]
 
+mod actions;
+mod correlation;
+pub mod detection;
+mod detectors;
+mod emergency;
+mod graph;
+mod handling;
+mod history;
+mod ladder;
+mod life;
+mod manager;
 mod observation;
 mod plan;
+mod state;
+mod stopping;
+mod symptoms;
+mod system;
 mod verdict;
+mod wording;
 
+pub use manager::FaultManager;
 pub use observation::{
     ActionOutcome, Detector, DetectorId, DetectorKind, Evidence, Number, Observation, Symptom,
 };
 pub use plan::{Action, ActionId, Effect, PlannedAction};
+pub use state::Condition;
+pub use system::Scope;
 pub use verdict::{ActionRecord, Cause, FaultId, FaultState, Severity, Verdict};

@@ -232,7 +232,7 @@ pub enum Evidence {
     /// Cycles that took too long.
     Overruns {
         /// How many.
-        count: u32,
+        count: u64,
         /// How many are tolerated.
         tolerated: u32,
         /// Within which time.

@@ -7,7 +7,7 @@ use component_sdk::expansion::descriptor;
 use component_sdk::prelude::*;
 use container::clock::Clock;
 use container::component::{
-    Component as Running, ComponentCell, DataOutput, Environment, PortEnd, Services,
+    Component as Running, ComponentCell, DataInput, DataOutput, Environment, PortEnd, Services,
 };
 use container::device::Devices;
 use container::event_log::EventLog;
@@ -16,6 +16,7 @@ use container::guard::{CodeRange, Guarded};
 use container::lane::{Crew, Lane, Work};
 use container::port::connection;
 use container::status::ComponentStatus;
+use container::supervision::Observations;
 use container::wake::Wake;
 use criterion::Criterion;
 use system_model::life_cycle::Operation;
@@ -104,6 +105,7 @@ fn time_cycles(length: usize, count: u64) -> Duration {
         clock: Clock::simulated(),
         events,
         devices: Devices::default(),
+        observations: Observations::default(),
     });
     let mut executor = Executor::new(
         "chain".to_owned(),
@@ -118,6 +120,7 @@ fn time_cycles(length: usize, count: u64) -> Duration {
         let (sender, receiver) = connection(QueuePolicy::Last, 1, size_of::<Sample>());
         let output = DataOutput {
             size: size_of::<Sample>(),
+            tap: None,
             connections: if number + 1 < length {
                 vec![(sender, None)]
             } else {
@@ -125,7 +128,11 @@ fn time_cycles(length: usize, count: u64) -> Duration {
             },
         };
         let ports = vec![
-            PortEnd::DataInput(arriving.replace(receiver), size_of::<Sample>()),
+            PortEnd::DataInput(DataInput {
+                source: arriving.replace(receiver),
+                tap: None,
+                size: size_of::<Sample>(),
+            }),
             PortEnd::DataOutput(output),
         ];
         executor.members.push(member(number, ports, &environment));
@@ -157,6 +164,7 @@ fn member(number: usize, ports: Vec<PortEnd>, environment: &Arc<Environment>) ->
         Arc::from(name.as_str()),
         1,
         Arc::clone(environment),
+        Arc::from([]),
         ports,
         Vec::new(),
     );

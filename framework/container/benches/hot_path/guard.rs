@@ -1,10 +1,11 @@
 //! A guarded call of an empty callback against a plain call through the same table.
 
 use std::hint::black_box;
+use std::time::Duration;
 
 use component_abi::{Callbacks, HostContext, HostTable, Instance, Status};
 use container::guard::loss::Loss;
-use container::guard::{Callback, CodeRange, Guarded, HostServices, Request};
+use container::guard::{CallLimit, Callback, CodeRange, Guarded, HostServices, Request};
 use criterion::Criterion;
 
 /// Callbacks that do nothing.
@@ -59,8 +60,9 @@ pub fn bench(criterion: &mut Criterion) {
         let code = CodeRange { start: 0, end: 0 };
         let mut guarded = Guarded::new(EMPTY, code, 0).expect("a stack");
         let loss = Loss::default();
-        guarded.call(Callback::Create, &loss, &mut NoServices);
-        bencher.iter(|| guarded.call(black_box(Callback::Execute), &loss, &mut NoServices));
+        let limit = CallLimit::from(Duration::from_millis(30));
+        guarded.call(Callback::Create, limit, &loss, &mut NoServices);
+        bencher.iter(|| guarded.call(black_box(Callback::Execute), limit, &loss, &mut NoServices));
     });
     group.finish();
 }

@@ -72,7 +72,10 @@ fn port_of<'library>(
     find_port(&libraries[end.component].description, &end.port)
 }
 
-fn types(source: &PortDescription, target: &PortDescription) -> Option<(String, String)> {
+pub(super) fn types(
+    source: &PortDescription,
+    target: &PortDescription,
+) -> Option<(String, String)> {
     let fits = match (&source.data_type, &target.data_type) {
         (None, None) => true,
         (Some(source), Some(target)) => source.fits(target),
@@ -89,7 +92,10 @@ fn types(source: &PortDescription, target: &PortDescription) -> Option<(String, 
     })
 }
 
-fn methods(required: &PortDescription, provided: &PortDescription) -> Option<(String, String)> {
+pub(super) fn methods(
+    required: &PortDescription,
+    provided: &PortDescription,
+) -> Option<(String, String)> {
     for method in &required.methods {
         let Some(other) = provided_method(provided, method) else {
             return Some((
@@ -215,8 +221,8 @@ impl Wire<'_> {
             }
         });
         self.with_port(target, |port| {
-            if let PortEnd::DataInput(input, _) = port {
-                *input = Some(receiver);
+            if let PortEnd::DataInput(input) = port {
+                input.source = Some(receiver);
             }
         });
     }
@@ -290,6 +296,8 @@ impl Wire<'_> {
                 port,
                 method,
                 messages,
+                in_work: None,
+                deaths: 0,
             });
         }
     }

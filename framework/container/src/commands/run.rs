@@ -3,6 +3,7 @@
 mod duration;
 mod live;
 mod report;
+mod words;
 
 use std::io::{self, IsTerminal as _, Write as _};
 use std::path::{Path, PathBuf};
@@ -18,8 +19,9 @@ use container::summary::Summary;
 use container::system::{ClockKind, RunOptions, StartError, System};
 use crossbeam::channel::bounded;
 use robot_simulation::Simulation;
+use system_model::rules::FaultRules;
 use system_model::specification::ApplicationSpecification;
-use system_profile::{LoadOptions, Problem, Severity, load_application, load_world};
+use system_profile::{LoadOptions, Problem, Severity, load_application, load_rules, load_world};
 
 use super::problems;
 use live::Watcher;
@@ -57,6 +59,9 @@ const LIBRARY_PATH_VARIABLE: &str = "STEADFAST_LIBRARY_PATH";
 pub struct RunArguments {
     /// Application profile (`package_profile` or `application_profile`)
     application: PathBuf,
+    /// Fault rules: what counts as a fault and what is done about it; may be given several times
+    #[arg(long, value_name = "FILE.xml")]
+    rules: Vec<PathBuf>,
     /// How long to run, by the chosen clock: 500ms, 30s, 2min, 1h; without it until the target is
     /// reached or Ctrl-C
     #[arg(long = "for", value_name = "DURATION", value_parser = duration::parse)]
@@ -111,7 +116,7 @@ pub fn run(arguments: &RunArguments) -> ExitCode {
 }
 
 fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
-    let specification = load(arguments)?;
+    let (specification, rules) = load(arguments)?;
     let simulation = simulate(&specification, arguments.seed)?;
     let stop_asked = watch_signals()?;
     let (echo, lines) = bounded(ECHO_QUEUE);
@@ -125,6 +130,8 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         events: arguments.events.clone(),
         echo: Some(echo),
         libraries: libraries(arguments),
+        rules,
+        models: Vec::new(),
     };
     let started = System::start(&specification, simulation, options);
     let system = started.map_err(|error| refused(&error))?;
@@ -163,34 +170,38 @@ fn conclude(arguments: &RunArguments, summary: &Summary) -> Result<(), Failed> {
     Ok(())
 }
 
-fn load(arguments: &RunArguments) -> Result<ApplicationSpecification, Failed> {
+fn load(arguments: &RunArguments) -> Result<(ApplicationSpecification, FaultRules), Failed> {
     let options = LoadOptions {
         search_paths: arguments.search_path.clone(),
         dangling: Severity::Error,
     };
-    if let Err(error) = std::fs::File::open(&arguments.application) {
-        return Err(Failed {
+    for file in std::iter::once(&arguments.application).chain(&arguments.rules) {
+        std::fs::File::open(file).map_err(|error| Failed {
             code: exit_code::FILE,
-            text: format!(
-                "{} cannot be read: {error}",
-                arguments.application.display()
-            ),
-        });
+            text: format!("{} cannot be read: {error}", file.display()),
+        })?;
     }
     let outcome = load_application(&arguments.application, &options);
-    match outcome.specification {
-        Some(specification) => {
-            show(&outcome.problems);
-            Ok(specification)
-        }
-        None => Err(Failed {
-            code: exit_code::PROFILE,
-            text: format!(
-                "{}\n{} was not started",
-                problems::render(&outcome.problems, errors_on_terminal()),
-                arguments.application.display()
-            ),
-        }),
+    let Some(specification) = outcome.specification else {
+        return Err(not_started(arguments, &outcome.problems));
+    };
+    let of_rules = load_rules(&specification, &arguments.rules, &options);
+    let Some(rules) = of_rules.rules else {
+        return Err(not_started(arguments, &of_rules.problems));
+    };
+    show(&outcome.problems);
+    show(&of_rules.problems);
+    Ok((specification, rules))
+}
+
+fn not_started(arguments: &RunArguments, found: &[Problem]) -> Failed {
+    Failed {
+        code: exit_code::PROFILE,
+        text: format!(
+            "{}\n{} was not started",
+            problems::render(found, errors_on_terminal()),
+            arguments.application.display()
+        ),
     }
 }
 

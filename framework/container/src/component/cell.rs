@@ -109,13 +109,17 @@ impl ComponentCell {
 
 /// Puts the components that a lost thread is inside of for ever into ERROR: those of its executor
 /// and those whose services they had called. `components` are all of the application; only the
-/// thread that took the lane over may call this, with the record of that lane's loss.
-pub(crate) fn mark_lost(components: &[Arc<ComponentCell>], lost: &LostThread) {
+/// thread that took the lane over may call this, with the record of that lane's loss. `reported`:
+/// the fault manager learns of it as the failure of what it had ordered.
+pub(crate) fn mark_lost(components: &[Arc<ComponentCell>], lost: &LostThread, reported: bool) {
     for number in &lost.components[..lost.depth] {
         if let Some(cell) = components.get(*number as usize) {
             // The thread inside never runs again, so being inside passes to this one.
             let mut component = Entered { cell };
-            component.lost(lost);
+            let fault = component.lost(lost);
+            if !reported {
+                component.report(&fault);
+            }
         }
     }
 }

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use super::cell::ComponentCell;
-use crate::port::{MailReceiver, MailSender, Receiver, Sender};
+use super::tap::{InputTap, OutputTap};
+use crate::port::{Datum, Leftover, MOST_DEATHS, MailReceiver, MailSender, Receiver, Sender};
 use crate::wake::Wake;
 
 /// The container's end of a port, by the port's index.
 pub enum PortEnd {
-    /// Data input: what arrives, and the size of a datum.
-    DataInput(Option<Receiver>, usize),
+    /// Data input.
+    DataInput(DataInput),
     /// Data output.
     DataOutput(DataOutput),
     /// Event input; its messages are in an [`Inbox`].
@@ -22,12 +23,24 @@ pub enum PortEnd {
     Provided,
 }
 
+/// A data input.
+pub struct DataInput {
+    /// Size of a datum.
+    pub size: usize,
+    /// What arrives; none if nothing is connected.
+    pub source: Option<Receiver>,
+    /// What rules want to know or to change; none without rules.
+    pub tap: Option<Box<InputTap>>,
+}
+
 /// A data output with its connections.
 pub struct DataOutput {
     /// Size of a datum.
     pub size: usize,
     /// One for each connected input, with what wakes its reader.
     pub connections: Vec<(Sender, Option<Arc<Wake>>)>,
+    /// What rules want to know; none without rules.
+    pub tap: Option<Box<OutputTap>>,
 }
 
 /// An event output with its connections.
@@ -40,12 +53,52 @@ pub struct EventOutput {
 
 /// Messages that arrive by one connection.
 pub struct Inbox {
-    /// The port they arrive at.
+    /// The port they arrive at, as the first instance of the component numbered it.
     pub port: u32,
-    /// The method, for queued calls; `None` for events.
+    /// The method, for queued calls; `None` for events. Numbered likewise.
     pub method: Option<u32>,
     /// The queue.
     pub messages: MailReceiver,
+    /// The message that is being worked on.
+    pub in_work: Option<Datum>,
+    /// Incarnations that died with it in work.
+    pub deaths: u32,
+}
+
+impl Inbox {
+    /// Takes the next message into work, or once more the one that was in work when the component
+    /// died; whether there is one.
+    pub fn take(&mut self) -> bool {
+        if self.in_work.is_none() {
+            self.in_work = self.messages.take();
+        }
+        self.in_work.is_some()
+    }
+
+    /// The message is done with.
+    pub fn done(&mut self) {
+        self.deaths = 0;
+        if let Some(message) = self.in_work.take() {
+            self.messages.give_back(message);
+        }
+    }
+
+    /// Forgets everything that has arrived.
+    pub fn clear(&mut self) {
+        self.done();
+        self.messages.clear();
+    }
+
+    /// What becomes of the message in work, if there is one, now that the component died.
+    pub fn leave(&mut self) -> Option<Leftover> {
+        let stamp_ns = self.in_work.as_ref()?.stamp_ns();
+        self.deaths += 1;
+        if self.deaths < MOST_DEATHS {
+            return Some(Leftover::Again);
+        }
+        self.done();
+        Some(Leftover::SetAside { stamp_ns })
+    }
 }
 
 /// A required service.

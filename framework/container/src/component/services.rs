@@ -2,7 +2,10 @@
 //! devices. `guard::host` says on which stack.
 
 mod calls;
+mod identity;
 mod requests;
+mod tapped;
+mod work;
 
 use std::sync::Arc;
 
@@ -12,9 +15,12 @@ use system_model::fault::{Fault, FaultKind};
 use super::port_end::{Inbox, PortEnd};
 use crate::clock::Clock;
 use crate::device::Devices;
-use crate::event_log::{Event, EventLog};
+use crate::event_log::EventLog;
 use crate::guard::{ForeignBytes, ForeignBytesMut, ForeignText, HostServices, Request};
-use crate::port::{Datum, Receiver, Sent};
+use crate::library::PortDescription;
+use crate::port::{Receiver, Sent};
+use crate::supervision::Observations;
+use fault_manager::DetectorId;
 
 /// What all components of an application share.
 #[derive(Debug)]
@@ -25,6 +31,21 @@ pub struct Environment {
     pub events: EventLog,
     /// Devices that can be opened.
     pub devices: Devices,
+    /// What waits for the fault manager.
+    pub observations: Observations,
+}
+
+/// The detectors of one component that the container itself serves.
+#[derive(Debug, Clone, Copy)]
+pub struct Detectors {
+    /// The component's index.
+    pub component: usize,
+    /// Runtime exceptions.
+    pub exception: DetectorId,
+    /// Hangs.
+    pub hang: DetectorId,
+    /// What it reports itself.
+    pub reported: DetectorId,
 }
 
 /// The services of one component instance.
@@ -32,6 +53,8 @@ pub struct Services {
     name: Arc<str>,
     incarnation: u32,
     environment: Arc<Environment>,
+    /// Its ports, as its library describes them.
+    interface: Arc<[PortDescription]>,
     ports: Vec<PortEnd>,
     inboxes: Vec<Inbox>,
     properties: Vec<(String, String)>,
@@ -41,7 +64,14 @@ pub struct Services {
     explanation: Option<Box<Explanation>>,
     last_status: Status,
     bad_pointer: Option<&'static str>,
-    critical_bytes: Option<(usize, usize)>,
+    /// Address and length of the memory that it registered.
+    critical: Option<(usize, usize)>,
+    /// None without a fault manager.
+    detectors: Option<Detectors>,
+    /// Inputs of which a datum is in work in this cycle, by bits.
+    in_work: u64,
+    /// An output of this cycle failed its check.
+    contaminated: bool,
 }
 
 /// Why a callback fails.
@@ -61,6 +91,7 @@ impl Services {
         name: Arc<str>,
         incarnation: u32,
         environment: Arc<Environment>,
+        interface: Arc<[PortDescription]>,
         ports: Vec<PortEnd>,
         properties: Vec<(String, String)>,
     ) -> Self {
@@ -68,6 +99,7 @@ impl Services {
             name,
             incarnation,
             environment,
+            interface,
             ports,
             inboxes: Vec::new(),
             properties,
@@ -76,55 +108,11 @@ impl Services {
             explanation: None,
             last_status: Status::SUCCESS,
             bad_pointer: None,
-            critical_bytes: None,
+            critical: None,
+            detectors: None,
+            in_work: 0,
+            contaminated: false,
         }
-    }
-
-    /// Instance name.
-    pub fn name(&self) -> &Arc<str> {
-        &self.name
-    }
-
-    /// The container's end of a port.
-    pub fn port_mut(&mut self, index: usize) -> Option<&mut PortEnd> {
-        self.ports.get_mut(index)
-    }
-
-    /// Adds a queue of messages for this component.
-    pub fn add_inbox(&mut self, inbox: Inbox) {
-        self.inboxes.push(inbox);
-    }
-
-    pub(super) fn inboxes(&self) -> usize {
-        self.inboxes.len()
-    }
-
-    pub(super) fn take_message(&mut self, inbox: usize) -> Option<(u32, Option<u32>, Datum)> {
-        let inbox = self.inboxes.get_mut(inbox)?;
-        let message = inbox.messages.take()?;
-        Some((inbox.port, inbox.method, message))
-    }
-
-    pub(super) fn give_back(&mut self, inbox: usize, message: Datum) {
-        if let Some(inbox) = self.inboxes.get_mut(inbox) {
-            inbox.messages.give_back(message);
-        }
-    }
-
-    /// Forgets all data and events that have arrived (onStop).
-    pub(super) fn clear_inputs(&mut self) {
-        for port in &mut self.ports {
-            if let PortEnd::DataInput(Some(receiver), _) = port {
-                receiver.clear();
-            }
-        }
-        for inbox in &mut self.inboxes {
-            inbox.messages.clear();
-        }
-    }
-
-    pub(super) fn set_cycle_time(&mut self, now_ns: u64) {
-        self.cycle_ns = now_ns;
     }
 
     pub(super) fn begin(&mut self, callback: &'static str) {
@@ -139,16 +127,6 @@ impl Services {
 
     pub(super) fn has_bad_pointer(&self) -> bool {
         self.bad_pointer.is_some()
-    }
-
-    pub(super) fn last_status(&self) -> Status {
-        self.last_status
-    }
-
-    pub(super) fn record(&self, event: Event) {
-        self.environment
-            .events
-            .record(self.environment.clock.now_ns(), event);
     }
 
     /// The fault behind a callback that returned: a failure, a panic, or a success in which the
@@ -198,15 +176,21 @@ impl Services {
 
     #[inline]
     fn read(&mut self, port: u32, data: ForeignBytesMut) -> Status {
-        let Some(PortEnd::DataInput(receiver, size)) = self.ports.get_mut(port as usize) else {
+        let Some(PortEnd::DataInput(input)) = self.ports.get_mut(port as usize) else {
             return Status::BAD_INPUT_PARAMETER;
         };
-        if data.size() != *size {
+        if data.size() != input.size {
             return Status::BAD_INPUT_PARAMETER;
         }
-        match receiver.as_mut().and_then(Receiver::receive) {
+        if input.tap.is_some() {
+            return self.read_tapped(port, data);
+        }
+        match input.source.as_mut().and_then(Receiver::receive) {
             None => Status::NOTHING,
-            Some(datum) if data.copy_from(datum.bytes()) => Status::SUCCESS,
+            Some(datum) if data.copy_from(datum.bytes()) => {
+                self.in_work |= bit(port);
+                Status::SUCCESS
+            }
             Some(_) => self.bad_pointer("read"),
         }
     }
@@ -218,6 +202,9 @@ impl Services {
         };
         if data.size() != output.size {
             return Status::BAD_INPUT_PARAMETER;
+        }
+        if output.tap.is_some() {
+            return self.write_tapped(port, data);
         }
         for (sender, wake) in &mut output.connections {
             if !sender.send(self.cycle_ns, self.incarnation, |bytes| data.copy_to(bytes)) {
@@ -274,7 +261,7 @@ impl Services {
             Request::Property(name, value, length) => self.property(name, value, length),
             Request::Log(level, message) => self.log(level, message),
             Request::Critical(address, length) => {
-                self.critical_bytes = (length > 0).then_some((address.addr(), length));
+                self.critical = (length > 0).then(|| (address.expose_provenance(), length));
                 Ok(Status::SUCCESS)
             }
             Request::ReportFault(code, message) => self.report_fault(code, message),
@@ -286,9 +273,9 @@ impl Services {
         };
         result.unwrap_or_else(|status| status)
     }
+}
 
-    /// Address and length of the registered critical memory.
-    pub fn critical(&self) -> Option<(usize, usize)> {
-        self.critical_bytes
-    }
+/// The bit of a port. What is in work on ports behind the 64th is not given to a successor.
+fn bit(port: u32) -> u64 {
+    1u64.checked_shl(port).unwrap_or(0)
 }

@@ -8,6 +8,7 @@
 
 use std::cell::{Cell, UnsafeCell};
 use std::ptr;
+use std::sync::atomic::{AtomicBool, Ordering, compiler_fence};
 
 use component_abi::{HostContext, Instance, Status, Text};
 use corosensei::Yielder;
@@ -15,7 +16,7 @@ use corosensei::stack::Stack as _;
 
 use super::copy::guarded_copy;
 use super::stack::ComponentStack;
-use super::{Callback, Exit, Input, What, Yielded};
+use super::{Callback, Exit, Input, Misbehaviour, What, Yielded};
 
 /// What a component asks. Pointers are as the component gave them: anything.
 #[derive(Debug, Clone, Copy)]
@@ -94,6 +95,17 @@ impl ForeignBytes {
 }
 
 impl ForeignBytesMut {
+    /// Memory that a component has registered, by its address.
+    pub fn at(address: usize, size: usize) -> Self {
+        let data = ptr::with_exposed_provenance_mut(address);
+        Self { data, size }
+    }
+
+    /// The same memory, for reading.
+    pub fn for_reading(self) -> ForeignBytes {
+        ForeignBytes::new(self.data, self.size)
+    }
+
     pub(super) fn new(data: *mut u8, size: usize) -> Self {
         Self { data, size }
     }
@@ -148,6 +160,11 @@ pub(super) struct HostSide {
     /// Who answers during this call, and how.
     services: Cell<*mut ()>,
     answer: Cell<Answer>,
+    /// Set while a request is answered on the component's stack: then the component must not be
+    /// taken off, though the stack is its own.
+    answering: AtomicBool,
+    /// What happens at the next callback.
+    injection: Cell<Option<Misbehaviour>>,
     exit: Cell<Exit>,
     base: usize,
     limit: usize,
@@ -172,6 +189,8 @@ impl HostSide {
             reply: Cell::new(0),
             services: Cell::new(ptr::null_mut()),
             answer: Cell::new(answer_nothing),
+            answering: AtomicBool::new(false),
+            injection: Cell::new(None),
             exit: Cell::new(Exit::Abort),
             base: 0,
             limit: 0,
@@ -214,6 +233,19 @@ impl HostSide {
         self.callback.set(callback);
     }
 
+    pub(super) fn set_injection(&self, misbehaviour: Option<Misbehaviour>) {
+        self.injection.set(misbehaviour);
+    }
+
+    #[inline]
+    pub(super) fn has_injection(&self) -> bool {
+        self.injection.get().is_some()
+    }
+
+    pub(super) fn take_injection(&self) -> Option<Misbehaviour> {
+        self.injection.take()
+    }
+
     pub(super) fn request(&self) -> &Request {
         // SAFETY: the component is suspended while the container looks at what it asks.
         unsafe { &*self.request.get() }
@@ -248,9 +280,20 @@ impl HostSide {
             return u64::from(Status::UNAUTHORIZED.0);
         }
         let answer = self.answer.get();
+        self.answering.store(true, Ordering::Relaxed);
+        // Who looks is a signal handler on this very thread: only the compiler must keep the order.
+        compiler_fence(Ordering::SeqCst);
         // SAFETY: set by the call that is under way (we are on this component's stack), which
         // does not touch the services while the component runs.
-        unsafe { answer(self.services.get(), request) }
+        let reply = unsafe { answer(self.services.get(), request) };
+        compiler_fence(Ordering::SeqCst);
+        self.answering.store(false, Ordering::Relaxed);
+        reply
+    }
+
+    /// Whether a request is being answered on the component's stack. Called inside the handler.
+    pub(super) fn is_answering(&self) -> bool {
+        self.answering.load(Ordering::Relaxed)
     }
 
     #[inline]

@@ -9,6 +9,7 @@ use std::time::Duration;
 use rustix::thread::futex;
 
 use super::trap::{Frame, Trap};
+use super::watch::Watch;
 
 /// How many components can be inside one another by service calls on one thread; deeper chains are
 /// refused when they are made.
@@ -25,10 +26,11 @@ pub struct LostThread {
     pub depth: usize,
 }
 
-/// Where a lane's thread leaves word when it is lost. At most one loss is under way a lane: the
-/// thread that takes over clears it first.
+/// What a lane's thread leaves word of: which callback it is in, and when it is lost. At most one
+/// loss is under way a lane: the thread that takes over clears it first.
 #[derive(Default)]
 pub struct Loss {
+    watch: Watch,
     state: AtomicU32,
     record: UnsafeCell<Option<LostThread>>,
 }
@@ -44,6 +46,12 @@ static LOSSES: AtomicU32 = AtomicU32::new(0);
 unsafe impl Sync for Loss {}
 
 impl Loss {
+    /// What the lane's thread is in, for the watchdog.
+    #[inline]
+    pub fn watch(&self) -> &Watch {
+        &self.watch
+    }
+
     /// Takes the record of a lost thread, if there is one.
     pub fn take(&self) -> Option<LostThread> {
         if self.state.load(Ordering::Acquire) != PUBLISHED {
@@ -51,6 +59,7 @@ impl Loss {
         }
         // SAFETY: published, and the lost thread never runs again; see the `Sync` argument.
         let record = unsafe { *self.record.get() };
+        self.watch.reset();
         self.state.store(NONE, Ordering::Release);
         record
     }

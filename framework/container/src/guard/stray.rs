@@ -6,8 +6,9 @@
 use std::ptr;
 use std::sync::atomic::{AtomicBool, AtomicI32, AtomicPtr, AtomicUsize, Ordering};
 
+use super::code::CodeRange;
 use super::copy::guarded_copy;
-use super::trap::{CodeRange, Trap};
+use super::trap::Trap;
 
 /// Copies of libraries that can be told apart; further ones are protected in their callbacks only.
 const MOST_CLAIMS: usize = 1024;
@@ -59,6 +60,7 @@ impl Word {
             address: self.address.load(Ordering::Relaxed),
             instruction_pointer: self.instruction_pointer.load(Ordering::Relaxed),
             stack_overflow: false,
+            hang: None,
         })
     }
 

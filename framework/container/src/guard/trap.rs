@@ -9,10 +9,14 @@ use std::io;
 use std::mem;
 use std::ptr;
 use std::sync::Once;
+use std::time::Duration;
 
 use corosensei::trap::CoroutineTrapHandler;
 
+use super::code::CodeRange;
 use super::copy;
+use super::hang;
+use super::injection;
 use super::loss::Loss;
 use super::registers;
 use super::stack::ComponentStack;
@@ -45,6 +49,9 @@ pub struct Trap {
     pub instruction_pointer: usize,
     /// Whether the stack's guard area was hit.
     pub stack_overflow: bool,
+    /// The limit that the callback did not keep, if the watchdog broke it off; then the signal is
+    /// the watchdog's, and the instruction pointer tells where the component was.
+    pub hang: Option<Duration>,
 }
 
 /// How a coroutine ends.
@@ -54,15 +61,6 @@ pub(super) enum Ended {
     Asked,
     /// A trap took the component off.
     Trapped(Trap),
-}
-
-/// Addresses of executable code, end exclusive.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct CodeRange {
-    /// First address.
-    pub start: usize,
-    /// One past the last.
-    pub end: usize,
 }
 
 /// What the handler must know of the component that this thread is inside of.
@@ -76,6 +74,13 @@ pub(super) struct Frame {
     pub(super) component: u32,
     /// Opaque to the handler: the host context, for calls that end the component from inside.
     pub(super) context: *const super::host::HostSide,
+}
+
+impl Frame {
+    /// Whether an instruction is the component's own, or stands for one.
+    pub(super) fn is_own_code(&self, instruction_pointer: usize) -> bool {
+        self.code.contains(instruction_pointer) || injection::contains(instruction_pointer)
+    }
 }
 
 thread_local! {
@@ -120,6 +125,7 @@ pub(super) fn install() {
             // SAFETY: the handler keeps to what a signal handler may do (module text).
             unsafe { libc::sigaction(signal, &raw const action, ptr::null_mut()) };
         }
+        hang::install();
     });
 }
 
@@ -170,7 +176,7 @@ extern "C" fn handle(
                 instruction_pointer,
                 stack_pointer,
             );
-            if (frame.code.start..frame.code.end).contains(&instruction_pointer) {
+            if frame.is_own_code(instruction_pointer) {
                 take_off(frame, trap, context);
             } else {
                 // In the C library or the loader: a lock may be held. The thread stops here for ever.
@@ -215,6 +221,7 @@ fn record(
         address,
         instruction_pointer,
         stack_overflow: overflow,
+        hang: None,
     }
 }
 
@@ -227,7 +234,7 @@ fn address(signal: i32, information: &libc::siginfo_t) -> usize {
 }
 
 /// Makes the coroutine return `trap` when the handler returns.
-fn take_off(frame: &Frame, trap: Trap, context: &mut libc::ucontext_t) {
+pub(super) fn take_off(frame: &Frame, trap: Trap, context: &mut libc::ucontext_t) {
     // SAFETY: the stack pointer is inside this coroutine; the registers are set as demanded below.
     // The interrupted instruction is the component's own, so no host call of ours is cut off.
     let registers = unsafe { frame.trap.setup_trap_handler(move || Ended::Trapped(trap)) };

@@ -6,7 +6,7 @@ use std::fs;
 use std::io::Write as _;
 use std::mem;
 use std::os::fd::AsRawFd as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use component_abi::{
     ABI_MAGIC, ABI_MAJOR, ABI_MINOR, ENTRY_SYMBOL, Header, LAYOUT_HASH, LibraryDescriptor,
@@ -25,6 +25,8 @@ pub struct LoadedLibrary {
     pub description: ComponentDescription,
     /// Where its code is.
     pub code: CodeRange,
+    /// The file that it is a copy of.
+    pub path: PathBuf,
 }
 
 impl LoadedLibrary {
@@ -56,13 +58,17 @@ impl LoadedLibrary {
             path: path.to_owned(),
             reason,
         })?;
-        let code = code_around(std::ptr::from_ref(descriptor).addr()).ok_or_else(|| {
+        let code = CodeRange::around(std::ptr::from_ref(descriptor).addr()).ok_or_else(|| {
             LibraryError::Descriptor {
                 path: path.to_owned(),
                 reason: "it has no executable segment".to_owned(),
             }
         })?;
-        Ok(Self { description, code })
+        Ok(Self {
+            description,
+            code,
+            path: path.to_owned(),
+        })
     }
 }
 
@@ -135,58 +141,4 @@ fn check_header(header: &Header, path: &Path) -> Result<(), LibraryError> {
         });
     }
     Ok(())
-}
-
-/// The executable segments of the loaded object that contains `address`.
-fn code_around(address: usize) -> Option<CodeRange> {
-    struct Search {
-        address: usize,
-        found: Option<CodeRange>,
-    }
-
-    unsafe extern "C" fn visit(
-        information: *mut libc::dl_phdr_info,
-        _size: libc::size_t,
-        data: *mut libc::c_void,
-    ) -> libc::c_int {
-        // SAFETY: the loader passes a valid record for the time of the call.
-        let information = unsafe { &*information };
-        // SAFETY: `data` is the search that was passed to `dl_iterate_phdr`.
-        let search = unsafe { &mut *data.cast::<Search>() };
-        let count = usize::from(information.dlpi_phnum);
-        // SAFETY: the loader's table has `dlpi_phnum` entries.
-        let segments = unsafe { std::slice::from_raw_parts(information.dlpi_phdr, count) };
-        let range = |segment: &libc::Elf64_Phdr| {
-            let start = information.dlpi_addr as usize + segment.p_vaddr as usize;
-            CodeRange {
-                start,
-                end: start + segment.p_memsz as usize,
-            }
-        };
-        let loaded = segments.iter().filter(|one| one.p_type == libc::PT_LOAD);
-        let contains = loaded
-            .clone()
-            .map(range)
-            .any(|range| (range.start..range.end).contains(&search.address));
-        if !contains {
-            return 0;
-        }
-        for code in loaded
-            .filter(|one| one.p_flags & libc::PF_X != 0)
-            .map(range)
-        {
-            let found = search.found.get_or_insert(code);
-            found.start = found.start.min(code.start);
-            found.end = found.end.max(code.end);
-        }
-        1
-    }
-
-    let mut search = Search {
-        address,
-        found: None,
-    };
-    // SAFETY: the callback keeps to its contract and `search` outlives the call.
-    unsafe { libc::dl_iterate_phdr(Some(visit), (&raw mut search).cast()) };
-    search.found
 }

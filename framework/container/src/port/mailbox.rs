@@ -2,18 +2,25 @@
 //! nonblocking calls must not vanish silently. Buffers travel forth and back, so nothing is
 //! allocated after it was made.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use super::Datum;
 
 /// The sending end.
 pub struct MailSender {
     filled: rtrb::Producer<Datum>,
     empty: rtrb::Consumer<Datum>,
+    accepted: Arc<AtomicU32>,
 }
 
 /// The receiving end.
 pub struct MailReceiver {
     filled: rtrb::Consumer<Datum>,
     empty: rtrb::Producer<Datum>,
+    /// What older incarnations of the sender have sent is not delivered. Incarnations count from 1:
+    /// a message of 0 could not be read.
+    accepted: Arc<AtomicU32>,
 }
 
 /// Makes a mailbox for `capacity` messages of `size` bytes.
@@ -25,14 +32,17 @@ pub fn mailbox(capacity: usize, size: usize) -> (MailSender, MailReceiver) {
         // Never full: it has a place for every message.
         let _fits = give_back.push(message);
     }
+    let accepted = Arc::new(AtomicU32::new(1));
     (
         MailSender {
             filled: fill,
             empty,
+            accepted: Arc::clone(&accepted),
         },
         MailReceiver {
             filled,
             empty: give_back,
+            accepted,
         },
     )
 }
@@ -49,6 +59,12 @@ pub enum Sent {
 }
 
 impl MailSender {
+    /// From now on only what incarnation `incarnation` of the sender and later ones send is
+    /// delivered.
+    pub fn succeed(&self, incarnation: u32) {
+        self.accepted.store(incarnation, Ordering::Relaxed);
+    }
+
     /// Sends a message that `fill` writes.
     pub fn send(
         &mut self,
@@ -78,7 +94,7 @@ impl MailReceiver {
     pub fn take(&mut self) -> Option<Datum> {
         loop {
             let message = self.filled.pop().ok()?;
-            if message.incarnation() != 0 {
+            if message.incarnation() >= self.accepted.load(Ordering::Relaxed) {
                 return Some(message);
             }
             self.give_back(message);
@@ -106,12 +122,13 @@ mod tests {
     #[test]
     fn a_full_mailbox_refuses_and_keeps_the_order() {
         let (mut sender, mut receiver) = mailbox(2, 4);
-        let mut send = |value: u8| {
+        fn put(sender: &mut MailSender, value: u8) -> Sent {
             sender.send(0, 1, |bytes| {
                 bytes[0] = value;
                 value != 9
             })
-        };
+        }
+        let mut send = |value| put(&mut sender, value);
         assert_eq!(send(1), Sent::Queued);
         assert_eq!(send(2), Sent::Queued);
         assert_eq!(send(3), Sent::Full);
@@ -129,5 +146,11 @@ mod tests {
         assert_eq!(send(4), Sent::Queued);
         receiver.clear();
         assert!(receiver.take().is_none());
+        assert_eq!(send(5), Sent::Queued);
+        sender.succeed(2);
+        assert!(
+            receiver.take().is_none(),
+            "the one that sent it is not there any more"
+        );
     }
 }

@@ -131,6 +131,13 @@ impl<Item> Writer<Item> {
 }
 
 impl<Item> Reader<Item> {
+    /// The item that was taken last.
+    #[inline]
+    pub fn last(&self) -> &Item {
+        // SAFETY: the number is the reader's own.
+        unsafe { &*self.shared.slot(self.own) }
+    }
+
     /// Takes the oldest item; it stays readable until the next call.
     #[inline]
     pub fn take(&mut self) -> Option<&Item> {
@@ -154,8 +161,7 @@ impl<Item> Reader<Item> {
                 self.own = found.slot();
                 self.position += 1;
                 self.place = self.shared.after(self.place);
-                // SAFETY: the number is the reader's own since the exchange.
-                return Some(unsafe { &*self.shared.slot(self.own) });
+                return Some(self.last());
             }
         }
     }

@@ -11,6 +11,7 @@ use system_model::life_cycle::Operation;
 use crate::component::{Component, ComponentCell, OperationError, mark_lost};
 use crate::guard::loss::LostThread;
 use crate::lane::{Lane, Work};
+use crate::supervision::Supervisor;
 
 /// While nothing else runs a component is free at once; a busy one was abandoned.
 const ENTER_LIMIT: Duration = Duration::from_millis(100);
@@ -20,6 +21,8 @@ const ENTER_LIMIT: Duration = Duration::from_millis(100);
 pub(super) enum Step {
     /// Make the instance.
     Construct,
+    /// Prepare its standbys.
+    Standby,
     /// A life-cycle operation.
     Operate(Operation),
 }
@@ -68,6 +71,7 @@ pub(super) struct Agenda {
     last_first: bool,
     /// Components that a thread is inside of for ever: nobody may enter them.
     left_behind: LeftBehind,
+    supervisor: Arc<Supervisor>,
     progress: Progress,
     failures: Failures,
 }
@@ -97,12 +101,14 @@ impl Agenda {
         steps: Vec<Step>,
         last_first: bool,
         left_behind: LeftBehind,
+        supervisor: Arc<Supervisor>,
     ) -> Self {
         Self {
             components,
             steps,
             last_first,
             left_behind,
+            supervisor,
             progress: Progress {
                 begun: Arc::default(),
                 component: Arc::default(),
@@ -136,19 +142,26 @@ impl Agenda {
         let result = match self.steps[step] {
             Step::Construct => component.construct(lane.loss()),
             Step::Operate(operation) => component.operate(operation, lane.loss()),
+            Step::Standby => {
+                drop(component);
+                self.supervisor.prepare_standbys(index, lane.loss());
+                return;
+            }
         };
         if let Err(OperationError::Failed(fault)) = result {
-            self.judge(&component, &fault);
+            self.judge(&mut component, &fault);
         }
     }
 
     /// A crash is contained and the rest goes on; a refusal is for the person to deal with.
-    fn judge(&self, component: &Component, fault: &Fault) {
+    fn judge(&self, component: &mut Component, fault: &Fault) {
         if fault.kind == FaultKind::ErrorReturn {
             self.failures.push(Failure {
                 component: component.name().to_string(),
                 fault: fault.clone(),
             });
+        } else {
+            component.report_error_at_start(fault);
         }
     }
 }
@@ -166,6 +179,6 @@ impl Work for Agenda {
     }
 
     fn after_loss(&mut self, lost: &LostThread) {
-        mark_lost(&self.components, lost);
+        mark_lost(&self.components, lost, false);
     }
 }

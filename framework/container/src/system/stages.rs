@@ -4,6 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
+use crossbeam::channel::Receiver;
+use fault_manager::Observation;
 use system_model::life_cycle::Operation;
 use system_model::specification::SchedulingPolicy;
 
@@ -30,6 +32,7 @@ impl System {
         );
         for steps in [
             [Step::Construct, Step::Operate(Operation::Initialize)].as_slice(),
+            [Step::Standby].as_slice(),
             [Step::Operate(Operation::Start)].as_slice(),
         ] {
             let result = self.perform(steps, false, BRING_UP_LIMIT);
@@ -95,6 +98,7 @@ impl System {
             steps.to_vec(),
             last_first,
             Arc::clone(&self.left_behind),
+            Arc::clone(&self.supervisor),
         );
         let (failures, progress) = (agenda.failures(), agenda.progress());
         let lane = Lane::new("life-cycle", Box::new(agenda));
@@ -111,13 +115,18 @@ impl System {
         })
     }
 
-    pub(super) fn launch(&mut self, executors: Vec<Executor>) -> Result<(), StartError> {
+    pub(super) fn launch(
+        &mut self,
+        executors: Vec<Executor>,
+        wanted: Receiver<usize>,
+    ) -> Result<(), StartError> {
+        self.environment.observations.report(Observation::Running);
         match self.options.clock {
             ClockKind::Simulated => {
                 let work = Simulated::new(
                     executors,
                     Arc::clone(&self.components),
-                    Arc::clone(&self.environment),
+                    Arc::clone(&self.supervisor),
                     self.world.clone(),
                     self.options.duration,
                 );
@@ -127,6 +136,8 @@ impl System {
                 self.lanes.push((lane, members));
             }
             ClockKind::Real => {
+                self.manager_threads
+                    .start(&self.supervisor, &self.crew, wanted)?;
                 if executors
                     .iter()
                     .any(|one| one.policy != SchedulingPolicy::Other)
@@ -157,7 +168,7 @@ impl System {
         let work = RealTime::new(
             executor,
             Arc::clone(&self.components),
-            Arc::clone(&self.environment),
+            Arc::clone(&self.supervisor),
         );
         let lane = Lane::new(name, Box::new(work));
         self.crew.start(&lane, prepare)?;

@@ -1,7 +1,5 @@
-//! Never returns.
+//! Spins for ever.
 #![forbid(unsafe_code)]
-
-use std::time::Duration;
 
 use component_sdk::prelude::*;
 use test_parts::{Faulty, FaultyPorts, Misbehaviour};
@@ -11,7 +9,7 @@ struct Hangs;
 impl Misbehaviour for Hangs {
     fn misbehave(_ports: &FaultyPorts) -> Outcome {
         loop {
-            std::thread::sleep(Duration::from_secs(1));
+            std::hint::spin_loop();
         }
     }
 }

@@ -11,6 +11,7 @@ use crossbeam::channel::Receiver;
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
 use super::on_terminal;
+use super::words::describe;
 
 /// Shows what happens.
 pub(super) struct Watcher {
@@ -69,54 +70,6 @@ impl Watcher {
             }
         }
     }
-}
-
-/// The event in words; `None` for those that would only be noise.
-fn describe(event: &Event) -> Option<String> {
-    Some(match event {
-        Event::RunStarted {
-            application,
-            clock,
-            seed,
-            components,
-        } => format!("{application}: {components} components, {clock} time, seed {seed}"),
-        Event::State {
-            component,
-            from,
-            to,
-            ..
-        } => format!("{component}: {from} -> {to}"),
-        Event::Fault {
-            component,
-            kind,
-            callback,
-            message,
-            place,
-            ..
-        } => {
-            let place = place.as_ref().map(|at| format!(" at {at}"));
-            format!(
-                "FAULT {component}: {kind} in {callback}: {message}{}",
-                place.unwrap_or_default()
-            )
-        }
-        Event::Overrun {
-            executor, late_ns, ..
-        } => {
-            let late = std::time::Duration::from_nanos(*late_ns);
-            format!("{executor}: overrun, {late:.1?} late")
-        }
-        Event::Log {
-            component,
-            level,
-            message,
-        } if *level != "debug" => format!("{component}: {level}: {message}"),
-        Event::Log { .. } | Event::RunStopped { .. } => return None,
-        Event::Notice { message } => format!("notice: {message}"),
-        Event::TargetReached { time_s } => {
-            format!("the robot has reached its target ({time_s:.2} s)")
-        }
-    })
 }
 
 impl Table {

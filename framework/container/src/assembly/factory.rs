@@ -1,0 +1,154 @@
+//! Where instances of a component come from: the first one, those that follow it when it failed,
+//! and those of its secondaries. Each is made from a fresh copy of its library.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Duration;
+
+use system_model::rules::{ComponentRules, Preload};
+use system_model::specification::{ComponentSpecification, ExecutionKind, PortDirection, PortKind};
+
+use crate::component::{
+    CallLimits, Calls, Component, DataInput, DataOutput, Environment, EventOutput, PortEnd,
+    Services,
+};
+use crate::guard::Guarded;
+use crate::library::{LoadedLibrary, PortDescription};
+use crate::status::ComponentStatus;
+
+/// Makes the instances of one component.
+pub struct Factory {
+    environment: Arc<Environment>,
+    /// The component's number in the application.
+    number: u32,
+    /// The component itself, then its secondaries in order.
+    variants: Vec<Variant>,
+    rules: ComponentRules,
+    /// So many loads from now fail (fault injection).
+    missing: AtomicU32,
+}
+
+/// One of the libraries that can play the component's part.
+pub struct Variant {
+    /// What the profile says.
+    pub specification: ComponentSpecification,
+    /// The library's file.
+    pub path: PathBuf,
+    /// What is prepared before it is needed.
+    pub preload: Preload,
+}
+
+impl Factory {
+    /// A factory for the component of this number.
+    pub fn new(
+        number: usize,
+        variants: Vec<Variant>,
+        rules: ComponentRules,
+        environment: Arc<Environment>,
+    ) -> Self {
+        Self {
+            rules,
+            environment,
+            number: u32::try_from(number).unwrap_or(u32::MAX),
+            variants,
+            missing: AtomicU32::new(0),
+        }
+    }
+
+    /// The component itself (0) and its secondaries (from 1).
+    pub fn variants(&self) -> &[Variant] {
+        &self.variants
+    }
+
+    /// The next load finds no library (fault injection).
+    pub fn lose_library(&self) {
+        self.missing.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// Makes an instance from a fresh copy of the library, with nothing connected and nothing run.
+    ///
+    /// # Errors
+    /// If the library cannot be loaded, or the machine has no room; in words.
+    pub fn make(&self, variant: usize, status: Arc<ComponentStatus>) -> Result<Component, String> {
+        let Some(chosen) = self.variants.get(variant) else {
+            return Err("there is no such secondary".to_owned());
+        };
+        let lost = self
+            .missing
+            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
+                left.checked_sub(1)
+            });
+        if lost.is_ok() {
+            return Err(format!(
+                "library {} is missing (injected)",
+                chosen.path.display()
+            ));
+        }
+        let library = LoadedLibrary::load(&chosen.path).map_err(|error| error.to_string())?;
+        self.instantiate(variant, &library, status)
+            .map_err(|error| format!("no stack for it: {error}"))
+    }
+
+    /// Makes an instance from a copy that was loaded for it.
+    ///
+    /// # Errors
+    /// If the machine has no room for its stack.
+    pub fn instantiate(
+        &self,
+        variant: usize,
+        library: &LoadedLibrary,
+        status: Arc<ComponentStatus>,
+    ) -> std::io::Result<Component> {
+        let specification = &self.variants[variant].specification;
+        let description = &library.description;
+        let guarded = Guarded::new(description.callbacks, library.code, self.number)?;
+        let services = Services::new(
+            Arc::from(specification.name.as_str()),
+            status.incarnation(),
+            Arc::clone(&self.environment),
+            description.ports.clone().into(),
+            description.ports.iter().map(unconnected).collect(),
+            specification.properties.clone(),
+        );
+        let period = match specification.execution.kind {
+            ExecutionKind::Periodic | ExecutionKind::PeriodicShared => {
+                specification.execution.period
+            }
+            ExecutionKind::Passive | ExecutionKind::Aperiodic => Duration::ZERO,
+        };
+        let mut component = Component::new(guarded, services, status, period);
+        let limits = CallLimits::by_rules(&self.rules, &specification.execution);
+        component.set_limits(limits.by_clock(&self.environment.clock));
+        Ok(component)
+    }
+}
+
+fn unconnected(port: &PortDescription) -> PortEnd {
+    let size = port
+        .data_type
+        .as_ref()
+        .map_or(0, |data_type| data_type.size);
+    match (port.kind, port.direction) {
+        (PortKind::Data, PortDirection::Input) => PortEnd::DataInput(DataInput {
+            size,
+            source: None,
+            tap: None,
+        }),
+        (PortKind::Data, PortDirection::Output) => PortEnd::DataOutput(DataOutput {
+            size,
+            connections: Vec::new(),
+            tap: None,
+        }),
+        (PortKind::Event, PortDirection::Input) => PortEnd::EventInput,
+        (PortKind::Event, PortDirection::Output) => PortEnd::EventOutput(EventOutput {
+            size,
+            connections: Vec::new(),
+        }),
+        (PortKind::Service, PortDirection::Output) => PortEnd::Required(Calls {
+            methods: Vec::new(),
+            provider: None,
+        }),
+        (PortKind::Service, PortDirection::Input) => PortEnd::Provided,
+    }
+}

@@ -1,0 +1,95 @@
+//! Events in words, for a person who watches.
+
+use container::event_log::Event;
+use fault_manager::{Cause, Verdict};
+
+/// The event in words; `None` for those that would only be noise.
+pub(super) fn describe(event: &Event) -> Option<String> {
+    Some(match event {
+        Event::RunStarted {
+            application,
+            clock,
+            seed,
+            components,
+        } => format!("{application}: {components} components, {clock} time, seed {seed}"),
+        Event::State {
+            component,
+            from,
+            to,
+            ..
+        } => format!("{component}: {from} -> {to}"),
+        Event::Fault {
+            component,
+            kind,
+            callback,
+            message,
+            place,
+            ..
+        } => {
+            let place = place.as_ref().map(|at| format!(" at {at}"));
+            format!(
+                "FAULT {component}: {kind} in {callback}: {message}{}",
+                place.unwrap_or_default()
+            )
+        }
+        Event::Verdict(verdict) => judged(verdict),
+        Event::DatumSetAside {
+            component, port, ..
+        } => format!(
+            "{component}: a datum of '{port}' is set aside, two incarnations died with it in work"
+        ),
+        Event::Overrun {
+            executor, late_ns, ..
+        } => {
+            let late = std::time::Duration::from_nanos(*late_ns);
+            format!("{executor}: overrun, {late:.1?} late")
+        }
+        Event::Log {
+            component,
+            level,
+            message,
+        } if *level != "debug" => format!("{component}: {level}: {message}"),
+        Event::Log { .. } | Event::RunStopped { .. } => return None,
+        Event::Notice { message } => format!("notice: {message}"),
+        Event::TargetReached { time_s } => {
+            format!("the robot has reached its target ({time_s:.2} s)")
+        }
+    })
+}
+
+/// A verdict in one line: who, what, why so, and what is being done.
+fn judged(verdict: &Verdict) -> String {
+    let cause = match verdict.cause {
+        Cause::Root => String::new(),
+        Cause::ConsequenceOf(root) => format!(", a consequence of fault {}", root.0),
+    };
+    let done = match verdict.actions.last() {
+        Some(action) if action.note.is_empty() => {
+            format!(": {} {}", action.action, action.outcome.replace('_', " "))
+        }
+        Some(action) => format!(
+            ": {} {} ({})",
+            action.action,
+            action.outcome.replace('_', " "),
+            action.note
+        ),
+        None => String::new(),
+    };
+    format!(
+        "VERDICT {} {}: {}{cause}, {}{done}",
+        verdict.id.0,
+        verdict.component,
+        verdict.kind,
+        state(verdict)
+    )
+}
+
+fn state(verdict: &Verdict) -> &'static str {
+    use fault_manager::FaultState::{Cleared, Confirmed, Healed, Prefailed};
+    match verdict.state {
+        Prefailed => "suspected",
+        Confirmed => "confirmed",
+        Healed => "healed",
+        Cleared => "cleared",
+    }
+}

@@ -1,0 +1,165 @@
+//! Checkpoints: copies of the memory that a component registered as critical (`critical`, Ahn et
+//! al. 2012, section 3.4.1), taken between callbacks, by which a successor is restored.
+//!
+//! A copy is certified only if all outputs of its cycle passed their checks, and the last few are
+//! kept, so that the state which is restored is older than the first symptom: a contaminated state
+//! is not brought back.
+
+use std::time::Duration;
+
+use super::services::Services;
+
+/// Copies that are kept. The oldest is two periods older than the newest: enough for a fault that
+/// is found some cycles after it began.
+const KEPT: usize = 3;
+
+/// The polynomial of iSCSI, for which processors have an instruction.
+const CHECKSUM: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISCSI);
+
+/// The copies of one component.
+#[derive(Debug)]
+pub struct Checkpoints {
+    period_ns: u64,
+    due_ns: u64,
+    /// Number of the copy that was taken last, counted from 1.
+    sequence: u64,
+    copies: [Copy; KEPT],
+}
+
+#[derive(Debug, Default)]
+struct Copy {
+    /// 0 while it is being written, or before the first time.
+    sequence: u64,
+    taken_ns: u64,
+    checksum: u32,
+    bytes: Vec<u8>,
+}
+
+/// A copy that may be restored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Certified<'checkpoints> {
+    /// Its number.
+    pub sequence: u64,
+    /// When it was taken, in nanoseconds of the container's clock.
+    pub taken_ns: u64,
+    /// The memory.
+    pub bytes: &'checkpoints [u8],
+}
+
+impl Checkpoints {
+    /// None taken yet; one is due in every period.
+    pub fn new(period: Duration) -> Self {
+        Self {
+            period_ns: u64::try_from(period.as_nanos()).unwrap_or(u64::MAX),
+            due_ns: 0,
+            sequence: 0,
+            copies: Default::default(),
+        }
+    }
+
+    /// Copies the registered memory if the period is over and the cycle's outputs were good.
+    #[inline]
+    pub(super) fn take_if_due(&mut self, services: &Services) {
+        let now_ns = services.cycle_ns();
+        if now_ns >= self.due_ns && !services.is_contaminated() {
+            self.take(now_ns, services);
+        }
+    }
+
+    fn take(&mut self, now_ns: u64, services: &Services) {
+        let Some(memory) = services.critical_memory() else {
+            return;
+        };
+        self.due_ns = now_ns + self.period_ns;
+        let next = self.sequence + 1;
+        let copy = &mut self.copies[(next % KEPT as u64) as usize];
+        copy.sequence = 0;
+        // Once, when the memory was registered: its size does not change.
+        copy.bytes.resize(memory.size(), 0);
+        if !memory.copy_to(&mut copy.bytes) {
+            return;
+        }
+        copy.checksum = CHECKSUM.checksum(&copy.bytes);
+        copy.taken_ns = now_ns;
+        copy.sequence = next;
+        self.sequence = next;
+    }
+
+    /// The newest whole copy that was taken before `before_ns`; how many were found broken.
+    pub fn newest_before(&self, before_ns: u64) -> (Option<Certified<'_>>, usize) {
+        let mut whole: Vec<&Copy> = self
+            .copies
+            .iter()
+            .filter(|copy| copy.sequence > 0 && copy.taken_ns < before_ns)
+            .collect();
+        whole.sort_by_key(|copy| copy.sequence);
+        let mut broken = 0;
+        while let Some(copy) = whole.pop() {
+            if CHECKSUM.checksum(&copy.bytes) == copy.checksum {
+                let certified = Certified {
+                    sequence: copy.sequence,
+                    taken_ns: copy.taken_ns,
+                    bytes: &copy.bytes,
+                };
+                return (Some(certified), broken);
+            }
+            broken += 1;
+        }
+        (None, broken)
+    }
+
+    /// Turns a bit of every copy round (fault injection).
+    pub fn corrupt(&mut self) {
+        for byte in self
+            .copies
+            .iter_mut()
+            .filter_map(|copy| copy.bytes.first_mut())
+        {
+            *byte ^= 1;
+        }
+    }
+
+    #[cfg(test)]
+    fn keep(&mut self, taken_ns: u64, content: &[u8]) {
+        self.sequence += 1;
+        self.copies[(self.sequence % KEPT as u64) as usize] = Copy {
+            sequence: self.sequence,
+            taken_ns,
+            checksum: CHECKSUM.checksum(content),
+            bytes: content.to_vec(),
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_newest_copy_before_the_symptom_is_restored_and_no_broken_one() {
+        let mut checkpoints = Checkpoints::new(Duration::from_millis(1));
+        assert_eq!(checkpoints.newest_before(u64::MAX), (None, 0));
+        for taken_ns in [10, 20, 30, 40] {
+            checkpoints.keep(taken_ns, &taken_ns.to_ne_bytes());
+        }
+        let taken = |checkpoints: &Checkpoints, before_ns| {
+            let (found, broken) = checkpoints.newest_before(before_ns);
+            (found.map(|found| found.taken_ns), broken)
+        };
+        for (before_ns, expected) in [
+            (u64::MAX, Some(40)),
+            (40, Some(30)),
+            (21, Some(20)),
+            (20, None), // the one of 10 is not kept any more
+        ] {
+            assert_eq!(taken(&checkpoints, before_ns), (expected, 0), "{before_ns}");
+        }
+        let newest = &mut checkpoints.copies[(4 % KEPT as u64) as usize];
+        newest.bytes[0] ^= 1;
+        assert_eq!(taken(&checkpoints, u64::MAX), (Some(30), 1));
+        let newest = &mut checkpoints.copies[(4 % KEPT as u64) as usize];
+        newest.bytes[0] ^= 1;
+        checkpoints.corrupt();
+        assert_eq!(taken(&checkpoints, u64::MAX), (None, 3));
+    }
+}

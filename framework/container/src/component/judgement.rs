@@ -1,0 +1,161 @@
+//! From the way a callback ended to a fault: on record, and reported to the fault manager.
+
+use fault_manager::{Evidence, Observation, Symptom};
+use system_model::fault::{Fault, FaultKind, SignalEvidence};
+use system_model::life_cycle::LifeCycleState;
+
+use super::Component;
+use crate::event_log::Event;
+use crate::guard::{Ending, Exit, Trap};
+
+/// The first page is never mapped: an address in it is a field of a null pointer.
+const NULL_PAGE: usize = 4096;
+
+impl Component {
+    #[cold]
+    pub(super) fn judge(&mut self, ending: Ending, callback: &'static str) -> Box<Fault> {
+        let fault = match ending {
+            Ending::Returned(status) => self.services.returned_fault(status, callback),
+            Ending::Trapped(trap) => trap_fault(&trap, callback, false),
+            Ending::Left(Exit::Abort) => {
+                Fault::new(FaultKind::Abort, callback, "abort()".to_owned())
+            }
+            Ending::Left(Exit::Exit(code)) => {
+                Fault::new(FaultKind::Exit, callback, format!("exit({code})"))
+            }
+            Ending::Gone => Fault::new(
+                FaultKind::ErrorReturn,
+                callback,
+                "called after it had ended".to_owned(),
+            ),
+        };
+        if fault.kind == FaultKind::Panic {
+            self.guarded.quarantine();
+        }
+        self.record(&fault);
+        // A component that hands out bad pointers must not be started; one that is active goes to
+        // ERROR by way of `onError`.
+        let unfit = fault.kind == FaultKind::BadPointer && !self.is_active();
+        if unfit || !self.guarded.is_alive() {
+            self.enter_state(LifeCycleState::Error);
+        }
+        Box::new(fault)
+    }
+
+    pub(super) fn record(&self, fault: &Fault) {
+        self.status.count_fault(format!(
+            "{} in {}: {}",
+            fault.kind, fault.callback, fault.message
+        ));
+        let event = Event::fault(&self.name, self.services.incarnation(), fault);
+        self.services.record(event);
+    }
+
+    /// Tells the fault manager, once the component is in the state that the fault brought it to.
+    pub fn report(&mut self, fault: &Fault) {
+        self.services.leave_work(self.is_active());
+        let Some(detectors) = self.services.detectors() else {
+            return;
+        };
+        let environment = self.services.environment();
+        let symptom = Symptom {
+            detector: match fault.kind {
+                FaultKind::Hang => detectors.hang,
+                _ => detectors.exception,
+            },
+            incarnation: self.services.incarnation(),
+            kind: fault.kind,
+            return_code: fault.return_code,
+            at: environment.clock.now(),
+            runs: self.is_active(),
+            evidence: exception(fault, environment.clock.is_simulated()),
+        };
+        environment
+            .observations
+            .report(Observation::Symptom(Box::new(symptom)));
+    }
+
+    /// Tells the fault manager of a component that failed while the application was brought up.
+    pub fn report_error_at_start(&mut self, fault: &Fault) {
+        if self.state() == LifeCycleState::Error {
+            self.report(fault);
+        }
+    }
+}
+
+/// A fault as evidence. What differs from run to run is left out of simulated runs.
+pub(super) fn exception(fault: &Fault, simulated: bool) -> Evidence {
+    let signal = fault.signal.as_ref();
+    Evidence::Exception {
+        callback: fault.callback.to_owned(),
+        message: fault.message.clone(),
+        place: fault
+            .place
+            .as_ref()
+            .map(|(file, line, column)| format!("{file}:{line}:{column}")),
+        signal: signal.map(|signal| signal.name.to_owned()),
+        address: signal
+            .filter(|signal| !simulated || signal.address < NULL_PAGE)
+            .map(|signal| format!("{:#x}", signal.address)),
+        backtrace: signal.map_or_else(Vec::new, |signal| signal.backtrace.clone()),
+        thread_lost: fault.thread_lost,
+    }
+}
+
+/// The fault of a thread that the component made itself.
+pub(super) fn stray_fault(trap: &Trap) -> Fault {
+    let mut fault = trap_fault(trap, "a thread of its own", false);
+    fault.message.push_str(": that thread was stopped");
+    fault
+}
+
+/// The fault that a trap stands for. Addresses that differ from run to run are left out unless
+/// they say something: a null dereference is near zero in every run.
+pub(super) fn trap_fault(trap: &Trap, callback: &'static str, thread_lost: bool) -> Fault {
+    let kind = match trap.signal {
+        _ if trap.hang.is_some() => FaultKind::Hang,
+        _ if trap.stack_overflow => FaultKind::StackOverflow,
+        libc::SIGBUS => FaultKind::BusError,
+        libc::SIGFPE => FaultKind::DivideByZero,
+        libc::SIGILL | libc::SIGTRAP => FaultKind::IllegalInstruction,
+        libc::SIGABRT => FaultKind::Abort,
+        _ => FaultKind::Segfault,
+    };
+    let signal = signal_name(trap.signal);
+    let mut message = match kind {
+        FaultKind::Hang => {
+            let limit = trap.hang.unwrap_or_default();
+            format!("it did not return within {limit:?}")
+        }
+        FaultKind::StackOverflow => "the stack's guard area was hit".to_owned(),
+        FaultKind::Segfault if trap.address < NULL_PAGE => {
+            format!("{signal} at address {:#x} (null pointer)", trap.address)
+        }
+        _ => signal.to_owned(),
+    };
+    if thread_lost {
+        message.push_str(", outside the component's own code: its thread was set aside");
+    }
+    Fault {
+        thread_lost,
+        signal: Some(SignalEvidence {
+            name: signal,
+            code: trap.code,
+            address: trap.address,
+            backtrace: Vec::new(),
+        }),
+        ..Fault::new(kind, callback, message)
+    }
+}
+
+fn signal_name(signal: i32) -> &'static str {
+    match signal {
+        libc::SIGBUS => "SIGBUS",
+        libc::SIGFPE => "SIGFPE",
+        libc::SIGILL => "SIGILL",
+        libc::SIGTRAP => "SIGTRAP",
+        libc::SIGABRT => "SIGABRT",
+        libc::SIGSEGV => "SIGSEGV",
+        _ => "watchdog",
+    }
+}

@@ -1,0 +1,115 @@
+//! Who the component is, and what passes on when another instance takes its place.
+
+use std::sync::Arc;
+
+use component_abi::Status;
+
+use super::{Detectors, Environment, Services};
+use crate::component::port_end::{Inbox, PortEnd};
+use crate::event_log::Event;
+use crate::guard::{ForeignBytes, ForeignBytesMut};
+use crate::library::PortDescription;
+
+impl Services {
+    /// Instance name.
+    pub fn name(&self) -> &Arc<str> {
+        &self.name
+    }
+
+    /// Which instance of this name it is, counted from 1.
+    pub fn incarnation(&self) -> u32 {
+        self.incarnation
+    }
+
+    /// What all components of the application share.
+    pub fn environment(&self) -> &Arc<Environment> {
+        &self.environment
+    }
+
+    /// The detectors that the fault manager has for the component.
+    pub fn detectors(&self) -> Option<Detectors> {
+        self.detectors
+    }
+
+    /// From now on the fault manager is told.
+    pub fn set_detectors(&mut self, detectors: Detectors) {
+        self.detectors = Some(detectors);
+    }
+
+    /// The ports, as the library describes them.
+    pub fn interface(&self) -> &Arc<[PortDescription]> {
+        &self.interface
+    }
+
+    pub(in crate::component) fn port_name(&self, index: usize) -> String {
+        let port = self.interface.get(index);
+        port.map_or_else(String::new, |port| port.name.clone())
+    }
+
+    /// The container's end of a port.
+    pub fn port_mut(&mut self, index: usize) -> Option<&mut PortEnd> {
+        self.ports.get_mut(index)
+    }
+
+    /// Adds a queue of messages for this component.
+    pub fn add_inbox(&mut self, inbox: Inbox) {
+        self.inboxes.push(inbox);
+    }
+
+    pub(in crate::component) fn take_inboxes(&mut self) -> Vec<Inbox> {
+        std::mem::take(&mut self.inboxes)
+    }
+
+    /// What belongs to the name rather than to the instance.
+    pub(in crate::component) fn take_over(&mut self, predecessor: &mut Self) {
+        self.detectors = predecessor.detectors;
+        self.cycle_ns = predecessor.cycle_ns;
+    }
+
+    /// Data and messages are this incarnation's from now on; what older ones have sent and nobody
+    /// taken is void.
+    pub(in crate::component) fn begin_incarnation(&mut self, incarnation: u32) {
+        self.incarnation = incarnation;
+        for port in &self.ports {
+            match port {
+                PortEnd::DataOutput(output) => {
+                    for (sender, _) in &output.connections {
+                        sender.succeed(incarnation);
+                    }
+                }
+                PortEnd::EventOutput(output) => {
+                    for (sender, _) in &output.connections {
+                        sender.succeed(incarnation);
+                    }
+                }
+                PortEnd::Required(calls) => {
+                    for queue in calls.methods.iter().filter_map(|it| it.queue.as_ref()) {
+                        queue.succeed(incarnation);
+                    }
+                }
+                PortEnd::DataInput(_) | PortEnd::EventInput | PortEnd::Provided => {}
+            }
+        }
+    }
+
+    /// The registered memory, for reading.
+    pub(in crate::component) fn critical_memory(&self) -> Option<ForeignBytes> {
+        self.critical().map(ForeignBytesMut::for_reading)
+    }
+
+    /// The registered memory.
+    pub fn critical(&self) -> Option<ForeignBytesMut> {
+        let (address, size) = self.critical?;
+        Some(ForeignBytesMut::at(address, size))
+    }
+
+    pub(in crate::component) fn record(&self, event: Event) {
+        self.environment
+            .events
+            .record(self.environment.clock.now_ns(), event);
+    }
+
+    pub(in crate::component) fn last_status(&self) -> Status {
+        self.last_status
+    }
+}

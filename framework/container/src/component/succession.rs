@@ -1,0 +1,267 @@
+//! One instance takes another's place: ports, messages and name pass on, and every datum that the
+//! old one has sent and nobody taken is void.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use system_model::specification::{PortDirection, PortKind};
+
+use super::port_end::{Calls, PortEnd};
+use super::{Checkpoints, Component, Inbox};
+use crate::library::PortDescription;
+use system_model::life_cycle::LifeCycleState;
+
+/// How the ports and methods that others call by number are numbered in this instance's library,
+/// where that is not the library that they were connected to.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Numbering {
+    /// By the first library's number; empty where nothing differs.
+    ports: Box<[u32]>,
+    /// By this library's port, and the first library's method.
+    methods: Box<[Box<[u32]>]>,
+    /// The interface that others were connected to; none: this instance's own.
+    first: Option<Arc<[PortDescription]>>,
+}
+
+impl Numbering {
+    /// This library's number of a port.
+    #[inline]
+    pub(super) fn port(&self, port: u32) -> u32 {
+        self.ports.get(port as usize).copied().unwrap_or(port)
+    }
+
+    /// This library's number of a method of one of its ports.
+    #[inline]
+    pub(super) fn method(&self, port: u32, method: u32) -> u32 {
+        let of_port = self.methods.get(port as usize);
+        of_port
+            .and_then(|methods| methods.get(method as usize))
+            .copied()
+            .unwrap_or(method)
+    }
+
+    fn between(first: &Arc<[PortDescription]>, own: &Arc<[PortDescription]>) -> Self {
+        let names = |ports: &[PortDescription]| {
+            let name = |port: &PortDescription| (port.name.clone(), method_names(port));
+            ports.iter().map(name).collect::<Vec<_>>()
+        };
+        if names(first) == names(own) {
+            return Self {
+                first: Some(Arc::clone(first)),
+                ..Self::default()
+            };
+        }
+        let ports = first
+            .iter()
+            .map(|port| index_of(own.iter().map(|other| &other.name), &port.name))
+            .collect();
+        let methods = own
+            .iter()
+            .map(|port| {
+                let same = first.iter().find(|other| other.name == port.name);
+                let methods = same.map_or(&[][..], |other| &other.methods);
+                let number = |name| index_of(port.methods.iter().map(|method| &method.name), name);
+                methods.iter().map(|method| number(&method.name)).collect()
+            })
+            .collect();
+        Self {
+            ports,
+            methods,
+            first: Some(Arc::clone(first)),
+        }
+    }
+}
+
+impl Component {
+    /// Takes the place of `predecessor`, which keeps nothing that it could be reached by. What the
+    /// predecessor had sent and nobody taken is not delivered any more; what had been sent to it
+    /// waits for this one.
+    pub fn succeed(&mut self, predecessor: &mut Self) {
+        let first = predecessor.numbering.first.as_ref();
+        let first = Arc::clone(first.unwrap_or(predecessor.services.interface()));
+        self.numbering = Numbering::between(&first, self.services.interface());
+        let incarnation = predecessor.services.incarnation() + 1;
+        let interface = Arc::clone(self.services.interface());
+        for (index, port) in interface.iter().enumerate() {
+            let old = predecessor.services.interface().iter().position(|other| {
+                (&other.name, other.kind, other.direction)
+                    == (&port.name, port.kind, port.direction)
+            });
+            let Some(old) = old else { continue };
+            let old_methods = method_names(&predecessor.services.interface()[old]);
+            let Some(end) = predecessor.services.port_mut(old) else {
+                continue;
+            };
+            let mut end = std::mem::replace(end, PortEnd::EventInput);
+            if let PortEnd::Required(calls) = &mut end {
+                reorder(calls, &old_methods, port);
+            }
+            if let Some(own) = self.services.port_mut(index) {
+                *own = end;
+            }
+        }
+        let inboxes: Vec<Inbox> = predecessor.services.take_inboxes();
+        for inbox in inboxes {
+            self.services.add_inbox(inbox);
+        }
+        self.services.take_over(&mut predecessor.services);
+        self.checkpoints = predecessor.checkpoints.take();
+        self.status = Arc::clone(&predecessor.status);
+        self.begin_incarnation(incarnation);
+    }
+
+    /// Which instance of this name it is, counted from 1.
+    pub fn incarnation(&self) -> u32 {
+        self.services.incarnation()
+    }
+
+    /// Which of the component's libraries it is of.
+    pub fn variant(&self) -> usize {
+        self.variant
+    }
+
+    /// Says which of the component's libraries it is of.
+    pub fn set_variant(&mut self, variant: usize) {
+        self.variant = variant;
+    }
+
+    /// Whether the library's constructor has run.
+    pub fn is_constructed(&self) -> bool {
+        self.constructed
+    }
+
+    /// Says that the library's constructor has run.
+    pub fn set_constructed(&mut self) {
+        self.constructed = true;
+    }
+
+    /// Initialised anew: READY, whatever it or its predecessor was before.
+    pub fn enter_ready(&mut self) {
+        self.enter_state(LifeCycleState::Ready);
+    }
+
+    /// The end of an instance whose place was taken: what can be freed is freed when it is dropped.
+    pub fn retire(&mut self) {
+        if self.guarded.is_alive() && self.state() != LifeCycleState::Destroyed {
+            self.guarded.quarantine();
+        }
+    }
+
+    /// From now on checkpoints are taken with this period.
+    pub fn keep_checkpoints(&mut self, period: Duration) {
+        self.checkpoints = Some(Box::new(Checkpoints::new(period)));
+    }
+
+    /// Its checkpoints, if any are taken.
+    pub fn checkpoints_mut(&mut self) -> Option<&mut Checkpoints> {
+        self.checkpoints.as_deref_mut()
+    }
+
+    /// Copies the newest certified checkpoint that was taken before `before_ns` to the registered
+    /// memory; whether there was one, and what a person should know of it.
+    pub fn restore_checkpoint(&mut self, before_ns: u64) -> (bool, String) {
+        let Some(checkpoints) = &self.checkpoints else {
+            return (false, "no checkpoints are taken".to_owned());
+        };
+        let (found, broken) = checkpoints.newest_before(before_ns);
+        let broken = match broken {
+            0 => String::new(),
+            broken => format!(" ({broken} newer with wrong checksum)"),
+        };
+        let Some(found) = found else {
+            return (false, format!("no checkpoint to restore{broken}"));
+        };
+        let Some(memory) = self.services.critical() else {
+            return (false, "no memory is registered to restore".to_owned());
+        };
+        if memory.size() != found.bytes.len() || !memory.copy_from(found.bytes) {
+            return (
+                false,
+                format!(
+                    "checkpoint {} not restored: it has {} bytes, the registered memory {}",
+                    found.sequence,
+                    found.bytes.len(),
+                    memory.size()
+                ),
+            );
+        }
+        (
+            true,
+            format!("checkpoint {} restored{broken}", found.sequence),
+        )
+    }
+
+    /// From now on this is another incarnation, of the same instance or of one that took its place.
+    pub fn begin_incarnation(&mut self, incarnation: u32) {
+        self.status.set_incarnation(incarnation);
+        self.services.begin_incarnation(incarnation);
+    }
+}
+
+fn method_names(port: &PortDescription) -> Vec<String> {
+    let names = port.methods.iter().map(|method| method.name.clone());
+    names.collect()
+}
+
+fn index_of<'name>(mut names: impl Iterator<Item = &'name String>, name: &str) -> u32 {
+    names
+        .position(|other| other == name)
+        .and_then(|index| u32::try_from(index).ok())
+        .unwrap_or(u32::MAX)
+}
+
+/// Puts the bound methods of a required port into the order of another library.
+fn reorder(calls: &mut Calls, old: &[String], port: &PortDescription) {
+    debug_assert!(port.kind == PortKind::Service && port.direction == PortDirection::Output);
+    let mut bound: Vec<_> = std::mem::take(&mut calls.methods)
+        .into_iter()
+        .map(Some)
+        .collect();
+    let take = |name: &String| {
+        let index = old.iter().position(|other| other == name)?;
+        bound.get_mut(index)?.take()
+    };
+    calls.methods = method_names(port).iter().filter_map(take).collect();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::library::MethodDescription;
+
+    fn port(name: &str, methods: &[&str]) -> PortDescription {
+        PortDescription {
+            name: name.to_owned(),
+            kind: PortKind::Service,
+            direction: PortDirection::Input,
+            data_type: None,
+            methods: methods
+                .iter()
+                .map(|name| MethodDescription {
+                    name: (*name).to_owned(),
+                    blocking: true,
+                    request: None,
+                    reply: None,
+                })
+                .collect(),
+        }
+    }
+
+    #[test]
+    fn callers_keep_their_numbers_whatever_the_order_in_the_successor() {
+        let first: Arc<[_]> = [port("a", &["x", "y"]), port("b", &["u", "v", "w"])].into();
+        let own: Arc<[_]> = [
+            port("new", &[]),
+            port("b", &["w", "u", "v"]),
+            port("a", &["y", "x"]),
+        ]
+        .into();
+        let numbering = Numbering::between(&first, &own);
+        assert_eq!((numbering.port(0), numbering.port(1)), (2, 1));
+        assert_eq!((numbering.method(2, 0), numbering.method(2, 1)), (1, 0));
+        let of_b: Vec<u32> = (0..3).map(|method| numbering.method(1, method)).collect();
+        assert_eq!(of_b, [1, 2, 0]);
+        let same = Numbering::between(&first, &first);
+        assert_eq!((same.port(1), same.method(1, 2)), (1, 2));
+    }
+}

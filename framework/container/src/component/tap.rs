@@ -1,0 +1,256 @@
+//! What stands between a component and its ports where rules ask for it: checks of the data, the
+//! safe value of a command port, samples for process models. A port without rules has none.
+
+mod safe_value;
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use fault_manager::detection::Finding;
+use fault_manager::detection::data_check::{DataCheck, Violation};
+use fault_manager::{DetectorId, Evidence, Number, Observation, Symptom};
+use system_model::data_type::DataType;
+use system_model::fault::FaultKind;
+
+use crate::port::Receiver;
+use crate::supervision::{Observations, SafetyGate, Sampler};
+
+pub use safe_value::SafeDatum;
+
+/// Where and when a port is used.
+#[derive(Debug, Clone, Copy)]
+pub struct Circumstances<'component> {
+    /// Where findings go.
+    pub observations: &'component Observations,
+    /// Incarnation of the component.
+    pub incarnation: u32,
+    /// Now, in nanoseconds of the container's clock.
+    pub now_ns: u64,
+}
+
+/// Checks of the data of one port, with whom they are reported as.
+pub struct Watch {
+    port: String,
+    data_type: DataType,
+    check: DataCheck,
+    /// By the index of the rule: who complains, and whether it does.
+    detectors: Vec<(DetectorId, bool)>,
+}
+
+impl Watch {
+    /// Checks of a port's data; `detectors` in the order of the check's rules.
+    pub fn new(
+        port: String,
+        data_type: DataType,
+        check: DataCheck,
+        detectors: Vec<DetectorId>,
+    ) -> Self {
+        Self {
+            port,
+            data_type,
+            check,
+            detectors: detectors.into_iter().map(|id| (id, false)).collect(),
+        }
+    }
+
+    /// Looks at a datum; whether anything is wrong with it.
+    #[inline]
+    fn look(&mut self, stamp_ns: u64, bytes: &[u8], at: Circumstances<'_>) -> bool {
+        let Self {
+            port,
+            data_type,
+            check,
+            detectors,
+        } = self;
+        check.check(stamp_ns, bytes, &mut |rule, finding| {
+            let Some((detector, complaining)) = detectors.get_mut(rule) else {
+                return;
+            };
+            match finding {
+                Finding::Passed if *complaining => {
+                    *complaining = false;
+                    at.observations.report(Observation::Passed(*detector));
+                }
+                Finding::Passed => {}
+                Finding::Violated(violation) => {
+                    *complaining = true;
+                    complain(*detector, port, data_type, &violation, at);
+                }
+            }
+        })
+    }
+
+    /// Another instance writes from now on: what is compared with earlier data begins anew.
+    pub fn begin_anew(&mut self) {
+        self.check.reset();
+    }
+}
+
+#[cold]
+fn complain(
+    detector: DetectorId,
+    port: &str,
+    data_type: &DataType,
+    violation: &Violation,
+    at: Circumstances<'_>,
+) {
+    let port = port.to_owned();
+    let field = |index: usize| {
+        let field = data_type.fields.get(index);
+        field.map_or_else(String::new, |field| field.path.clone())
+    };
+    let (kind, evidence) = match *violation {
+        Violation::Size { size, expected } => (
+            FaultKind::WrongSize,
+            Evidence::Size {
+                port,
+                size,
+                expected,
+            },
+        ),
+        Violation::Value {
+            at,
+            value,
+            minimum,
+            maximum,
+        } => (
+            FaultKind::OutOfRange,
+            Evidence::Value {
+                port,
+                field: field(at.field),
+                value: Number(value),
+                minimum,
+                maximum,
+            },
+        ),
+        Violation::Jump {
+            at,
+            value,
+            rate_per_second,
+            maximum_per_second,
+        } => (
+            FaultKind::RateOfChange,
+            Evidence::Jump {
+                port,
+                field: field(at.field),
+                value: Number(value),
+                rate: Number(rate_per_second),
+                maximum_per_second,
+            },
+        ),
+        Violation::Standstill { field: of, count } => (
+            FaultKind::Stuck,
+            Evidence::Frozen {
+                port,
+                field: of.map_or_else(String::new, field),
+                count,
+            },
+        ),
+    };
+    at.observations
+        .report(Observation::Symptom(Box::new(Symptom {
+            detector,
+            incarnation: at.incarnation,
+            kind,
+            return_code: 0,
+            at: Duration::from_nanos(at.now_ns),
+            runs: true,
+            evidence,
+        })));
+}
+
+/// What stands between a component and one of its outputs.
+pub struct OutputTap {
+    /// The datum on its way.
+    pub scratch: Box<[u8]>,
+    /// Checks.
+    pub watch: Option<Watch>,
+    /// Process models that want to know.
+    pub samplers: Vec<Sampler>,
+}
+
+impl OutputTap {
+    /// For data of `size` bytes.
+    pub fn new(size: usize) -> Self {
+        Self {
+            scratch: vec![0; size].into_boxed_slice(),
+            watch: None,
+            samplers: Vec::new(),
+        }
+    }
+
+    /// Looks at the datum on its way; whether it is good. A bad one goes on all the same: who reads
+    /// it may have rules of its own.
+    #[inline]
+    pub fn look(&mut self, at: Circumstances<'_>) -> bool {
+        for sampler in &self.samplers {
+            sampler.sample(at.now_ns, &self.scratch);
+        }
+        let Some(watch) = &mut self.watch else {
+            return true;
+        };
+        !watch.look(at.now_ns, &self.scratch, at)
+    }
+}
+
+/// What stands between one of a component's inputs and the component.
+pub struct InputTap {
+    /// Checks; a datum that fails one is not delivered, which protects the component.
+    pub watch: Option<Watch>,
+    /// What is read instead of commands that are stale or from before an emergency stop.
+    pub safe: Option<SafeDatum>,
+    /// Shut during an emergency stop.
+    pub gate: Arc<SafetyGate>,
+    /// From which age on data are stale.
+    pub maximum_age: Option<Duration>,
+    /// Process models that want to know.
+    pub samplers: Vec<Sampler>,
+    /// When the datum was written that was delivered last.
+    delivered_ns: u64,
+}
+
+impl InputTap {
+    /// One that lets everything pass.
+    pub fn new(gate: Arc<SafetyGate>) -> Self {
+        Self {
+            watch: None,
+            safe: None,
+            gate,
+            maximum_age: None,
+            samplers: Vec::new(),
+            delivered_ns: 0,
+        }
+    }
+
+    /// The next datum that the component may see; whether it is one that was sent, and its content.
+    pub fn receive<'tap>(
+        &'tap mut self,
+        source: &'tap mut Receiver,
+        at: Circumstances<'_>,
+    ) -> Option<(bool, &'tap [u8])> {
+        if let Some(datum) = source.receive() {
+            let stamp_ns = datum.stamp_ns();
+            let watch = self.watch.as_mut();
+            let is_good = watch.is_none_or(|watch| !watch.look(stamp_ns, datum.bytes(), at));
+            if is_good && self.gate.passes(stamp_ns) {
+                self.delivered_ns = stamp_ns;
+                for sampler in &self.samplers {
+                    sampler.sample(at.now_ns, datum.bytes());
+                }
+                if let Some(safe) = &mut self.safe {
+                    safe.remember(datum.bytes());
+                }
+                return Some((true, datum.bytes()));
+            }
+        }
+        let is_stale = self.delivered_ns > 0
+            && self.maximum_age.is_some_and(|maximum| {
+                Duration::from_nanos(at.now_ns.saturating_sub(self.delivered_ns)) > maximum
+            });
+        if is_stale || !self.gate.passes(self.delivered_ns) {
+            let safe = self.safe.as_mut()?;
+            return Some((false, safe.at(at.now_ns)));
+        }
+        None
+    }
+}

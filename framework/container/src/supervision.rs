@@ -1,0 +1,21 @@
+//! Around the fault manager: what is observed reaches it, what it decides is done.
+
+mod emergency;
+mod models;
+mod monitors;
+pub(crate) mod obedience;
+mod observations;
+mod orders;
+mod recovery;
+mod standby;
+mod supervisor;
+mod threads;
+
+pub use emergency::{Actuator, CONTROLLED_STOP, Emergency, SafetyGate};
+pub use models::{Channel, ModelMonitor, Reading, Sampler};
+pub use monitors::{InputAge, LOOK_PERIOD, Monitors, OverrunCount, Subject, WorkDone};
+pub use observations::Observations;
+pub use orders::{Order, Orders, Task};
+pub use standby::Standbys;
+pub use supervisor::Supervisor;
+pub use threads::ManagerThreads;

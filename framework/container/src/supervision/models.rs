@@ -1,0 +1,186 @@
+//! Process-model monitors: ports leave samples, the monitor compares them with its model when the
+//! fault manager's time comes.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use crossbeam::queue::ArrayQueue;
+use fault_manager::detection::process_model::{InputMap, Monitor, Residual};
+use fault_manager::detection::{Finding, NumberReader};
+use fault_manager::{DetectorId, Evidence, Number, Observation, Symptom};
+use system_model::fault::FaultKind;
+
+use super::Observations;
+use crate::status::ComponentStatus;
+
+/// Samples that may wait for a monitor: those of a hundred milliseconds at a kilohertz from ten
+/// ports. More are dropped, and the monitor goes on with those that come.
+const QUEUE: usize = 1024;
+
+/// Inputs and outputs that one port can have for a model.
+const MOST_VALUES: usize = 8;
+
+/// What one port said.
+#[derive(Debug, Clone, Copy)]
+struct Sample {
+    at_ns: u64,
+    /// Of which port: an index into inputs or outputs.
+    channel: Channel,
+    values: [f64; MOST_VALUES],
+}
+
+/// Where the values of a port begin in the model's input or output vector.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Channel {
+    /// Inputs from this one on.
+    Input(usize),
+    /// This output.
+    Output(usize),
+}
+
+/// How a port's datum is read.
+pub enum Reading {
+    /// One number of it.
+    Number(NumberReader),
+    /// The model's inputs, reckoned from it.
+    Inputs(InputMap),
+}
+
+/// The end of a monitor at a port.
+pub struct Sampler {
+    samples: Arc<ArrayQueue<Sample>>,
+    channel: Channel,
+    reading: Reading,
+}
+
+impl Sampler {
+    /// Leaves a sample of a datum. Never waits.
+    pub fn sample(&self, at_ns: u64, bytes: &[u8]) {
+        let mut values = [f64::NAN; MOST_VALUES];
+        match &self.reading {
+            Reading::Number(reader) => values[0] = reader.read(bytes),
+            Reading::Inputs(map) => {
+                if let Some(values) = values.get_mut(..map.inputs()) {
+                    map.read(bytes, values);
+                }
+            }
+        }
+        let sample = Sample {
+            at_ns,
+            channel: self.channel,
+            values,
+        };
+        // Dropped: the monitor is behind by a hundred milliseconds and tolerates missing samples.
+        let _dropped = self.samples.push(sample);
+    }
+}
+
+/// A monitor with its samples.
+pub struct ModelMonitor {
+    name: String,
+    method: &'static str,
+    detector: DetectorId,
+    /// The component that is to blame.
+    status: Arc<ComponentStatus>,
+    incarnation: u32,
+    samples: Arc<ArrayQueue<Sample>>,
+    monitor: Monitor,
+    inputs: Vec<f64>,
+    /// None: no sample since the last step.
+    outputs: Vec<Option<f64>>,
+    complaining: bool,
+}
+
+impl ModelMonitor {
+    /// A monitor that has seen nothing.
+    pub fn new(
+        name: String,
+        method: &'static str,
+        detector: DetectorId,
+        status: Arc<ComponentStatus>,
+        monitor: Monitor,
+    ) -> Self {
+        let (inputs, outputs) = (monitor.model().inputs(), monitor.model().outputs());
+        Self {
+            name,
+            method,
+            detector,
+            incarnation: status.incarnation(),
+            status,
+            samples: Arc::new(ArrayQueue::new(QUEUE)),
+            monitor,
+            inputs: vec![f64::NAN; inputs],
+            outputs: vec![None; outputs],
+            complaining: false,
+        }
+    }
+
+    /// The end for a port.
+    pub fn sampler(&self, channel: Channel, reading: Reading) -> Sampler {
+        Sampler {
+            samples: Arc::clone(&self.samples),
+            channel,
+            reading,
+        }
+    }
+
+    /// Compares what has come with the model.
+    pub(super) fn poll(&mut self, observations: &Observations) {
+        if self.status.incarnation() != self.incarnation {
+            self.incarnation = self.status.incarnation();
+            self.monitor.reset();
+        }
+        while let Some(sample) = self.samples.pop() {
+            match sample.channel {
+                Channel::Input(first) => {
+                    for (place, value) in self.inputs.iter_mut().skip(first).zip(sample.values) {
+                        *place = value;
+                    }
+                }
+                Channel::Output(index) => {
+                    if let Some(place) = self.outputs.get_mut(index) {
+                        *place = Some(sample.values[0]);
+                    }
+                    self.step(sample.at_ns, observations);
+                }
+            }
+        }
+    }
+
+    /// One step of the model, once every output has come.
+    fn step(&mut self, at_ns: u64, observations: &Observations) {
+        let outputs: Option<Vec<f64>> = self.outputs.iter().copied().collect();
+        let Some(outputs) = outputs else { return };
+        self.outputs.fill(None);
+        let at = Duration::from_nanos(at_ns);
+        match self.monitor.step(at, &self.inputs, &outputs) {
+            Some(Finding::Passed) if self.complaining => {
+                self.complaining = false;
+                observations.report(Observation::Passed(self.detector));
+            }
+            None | Some(Finding::Passed) => {}
+            Some(Finding::Violated(residual)) => {
+                self.complaining = true;
+                observations.report(Observation::Symptom(Box::new(self.symptom(at, &residual))));
+            }
+        }
+    }
+
+    fn symptom(&self, at: Duration, residual: &Residual) -> Symptom {
+        Symptom {
+            detector: self.detector,
+            incarnation: self.incarnation,
+            kind: FaultKind::ProcessModel,
+            return_code: 0,
+            at,
+            runs: true,
+            evidence: Evidence::Residual {
+                monitor: self.name.clone(),
+                method: self.method.to_owned(),
+                residual: Number(residual.residual),
+                statistic: Number(residual.statistic),
+                threshold: residual.threshold,
+            },
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! An executor carries out an order of the fault manager, between two steps of its cycle.
+
+use std::time::Duration;
+
+use fault_manager::{ActionId, ActionOutcome, Observation};
+use system_model::life_cycle::{LifeCycleState, Operation};
+use system_model::specification::ExecutionKind;
+
+use super::recovery::{replace, reset, words};
+use super::{Order, Supervisor, Task};
+use crate::component::{Component, ComponentCell};
+use crate::lane::Lane;
+
+/// How long an executor waits for a component that another thread is inside of by a service call:
+/// as long as such a call may take by default.
+const ENTER_LIMIT: Duration = Duration::from_secs(1);
+
+/// Carries an order out and reports how it ended.
+pub fn obey(
+    order: &Order,
+    cell: &ComponentCell,
+    kind: ExecutionKind,
+    supervisor: &Supervisor,
+    lane: &Lane,
+) {
+    let Some(mut component) = cell.enter(lane.token(), ENTER_LIMIT) else {
+        end(
+            order.action,
+            supervisor,
+            Err("a service call is inside it".to_owned()),
+            0,
+        );
+        return;
+    };
+    let again = component.is_unproven();
+    let result = perform(order, &mut component, supervisor, lane);
+    let recovered =
+        result.is_ok() && matches!(order.task, Task::Reset { .. } | Task::Replace { .. });
+    if recovered {
+        component.expect_proof();
+    }
+    end(order.action, supervisor, result, component.incarnation());
+    if recovered {
+        work_at_once(&mut component, kind, again, supervisor, lane);
+        refill(order.component, supervisor, lane);
+    }
+}
+
+/// The thread was lost while it carried an order out.
+pub fn lost(action: ActionId, supervisor: &Supervisor) {
+    let reason = "its thread was lost in the C library meanwhile".to_owned();
+    end(Some(action), supervisor, Err(reason), 0);
+}
+
+fn perform(
+    order: &Order,
+    component: &mut Component,
+    supervisor: &Supervisor,
+    lane: &Lane,
+) -> Result<String, String> {
+    let loss = lane.loss();
+    let Some(standbys) = supervisor.standbys(order.component) else {
+        return Err("there is no such component".to_owned());
+    };
+    match &order.task {
+        Task::Reset {
+            checkpoint_before_ns,
+        } => reset(component, standbys, *checkpoint_before_ns, loss),
+        Task::Replace {
+            variant,
+            checkpoint_before_ns,
+        } => replace(component, standbys, *variant, *checkpoint_before_ns, loss),
+        Task::Stop => stop(component, lane),
+        Task::Destroy => destroy(component, lane),
+        Task::EmergencyStop { power_off } => {
+            stop_actuator(order, component, *power_off, supervisor, lane);
+            Ok(String::new())
+        }
+        Task::Resume => match component.state() {
+            LifeCycleState::Inactive => component
+                .operate(Operation::Start, loss)
+                .map(|()| String::new())
+                .map_err(|error| words("onStart", &error)),
+            _ => Ok(String::new()),
+        },
+    }
+}
+
+/// A component that is in ERROR or was never started runs no more than a stopped one.
+fn stop(component: &mut Component, lane: &Lane) -> Result<String, String> {
+    if !component.is_active() {
+        return Ok(format!("it was {}", component.state()));
+    }
+    component
+        .operate(Operation::Stop, lane.loss())
+        .map(|()| String::new())
+        .map_err(|error| words("onStop", &error))
+}
+
+fn destroy(component: &mut Component, lane: &Lane) -> Result<String, String> {
+    if component.is_active() {
+        // That it fails is on record; it is destroyed all the same.
+        let _recorded = component.operate(Operation::Stop, lane.loss());
+    }
+    component
+        .operate(Operation::Destroy, lane.loss())
+        .map(|()| String::new())
+        .map_err(|error| words("onDestroy", &error))
+}
+
+/// Tells an actuator of the emergency and lets it work once: its command ports read their safe
+/// values by now, and it is not to wait for its next period.
+fn stop_actuator(
+    order: &Order,
+    component: &mut Component,
+    power_off: bool,
+    supervisor: &Supervisor,
+    lane: &Lane,
+) {
+    let now_ns = supervisor.environment().clock.now_ns();
+    if component.is_active() {
+        component.tell_emergency_stop(lane.loss());
+    }
+    if component.is_active() {
+        component.execute(now_ns, lane.loss());
+    }
+    if power_off {
+        // That it fails is on record; the stop goes on with the other actuators.
+        let _recorded = stop(component, lane);
+    }
+    if let Some(action) = order.action
+        && supervisor.emergency().answered(action)
+    {
+        let note = "every actuator was told".to_owned();
+        finish(Some(action), supervisor, Ok(note), 0);
+    }
+}
+
+/// One that recovered for the first time since it worked does at once what it failed to do; one
+/// that fails again and again waits for its next cycle, so that what disturbs it may pass.
+fn work_at_once(
+    component: &mut Component,
+    kind: ExecutionKind,
+    again: bool,
+    supervisor: &Supervisor,
+    lane: &Lane,
+) {
+    if kind == ExecutionKind::Passive {
+        component.prove();
+        return;
+    }
+    if !again {
+        let now_ns = supervisor.environment().clock.now_ns();
+        component.execute(now_ns, lane.loss());
+        if component.is_active() {
+            component.updated(lane.loss());
+        }
+    }
+}
+
+/// Another standby for the one that was used: now where time is simulated, else in the background.
+fn refill(component: usize, supervisor: &Supervisor, lane: &Lane) {
+    if supervisor.environment().clock.is_simulated() {
+        supervisor.prepare_standbys(component, lane.loss());
+    } else {
+        supervisor.want_standbys(component);
+    }
+}
+
+/// The emergency stop ends when the last actuator has answered, all else when it is done.
+fn end(
+    action: Option<ActionId>,
+    supervisor: &Supervisor,
+    result: Result<String, String>,
+    incarnation: u32,
+) {
+    let is_emergency = action.is_some_and(|action| supervisor.emergency().is_for(action));
+    if !is_emergency {
+        finish(action, supervisor, result, incarnation);
+    }
+}
+
+fn finish(
+    action: Option<ActionId>,
+    supervisor: &Supervisor,
+    result: Result<String, String>,
+    incarnation: u32,
+) {
+    let Some(action) = action else { return };
+    let outcome = match result {
+        Ok(note) => ActionOutcome::Done { incarnation, note },
+        Err(reason) => ActionOutcome::Failed { reason },
+    };
+    supervisor
+        .environment()
+        .observations
+        .report(Observation::Ended { action, outcome });
+}

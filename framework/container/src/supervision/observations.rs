@@ -1,0 +1,73 @@
+//! What was observed and waits for the fault manager: one bounded queue for everybody.
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use crossbeam::queue::ArrayQueue;
+use fault_manager::Observation;
+
+/// Observations that may wait. A detector that complains about every datum makes a few hundred a
+/// second, and whoever reports also sees to it that the queue is emptied; this many wait only if a
+/// component writes thousands of bad data in one callback.
+const QUEUE: usize = 4096;
+
+/// The last part of the queue is kept for what comes once: a component that stopped running, the
+/// end of an action. Symptoms of a component that still runs come again.
+const RESERVED: usize = QUEUE / 4;
+
+/// The queue.
+#[derive(Debug)]
+pub struct Observations {
+    queue: ArrayQueue<Observation>,
+    pending: AtomicBool,
+    dropped: AtomicU64,
+}
+
+impl Default for Observations {
+    fn default() -> Self {
+        Self {
+            queue: ArrayQueue::new(QUEUE),
+            pending: AtomicBool::new(false),
+            dropped: AtomicU64::new(0),
+        }
+    }
+}
+
+impl Observations {
+    /// Leaves an observation for the fault manager. Never waits.
+    pub fn report(&self, observation: Observation) {
+        let comes_again = match &observation {
+            Observation::Symptom(symptom) => symptom.runs,
+            Observation::Passed(_) | Observation::Tick => true,
+            _ => false,
+        };
+        let full = comes_again && self.queue.len() >= QUEUE - RESERVED;
+        if full || self.queue.push(observation).is_err() {
+            self.dropped.fetch_add(1, Ordering::Relaxed);
+        }
+        self.pending.store(true, Ordering::Release);
+    }
+
+    /// Whether there is something to take.
+    #[inline]
+    pub fn is_pending(&self) -> bool {
+        self.pending.load(Ordering::Relaxed)
+    }
+
+    /// Takes the oldest one.
+    pub fn take(&self) -> Option<Observation> {
+        let taken = self.queue.pop();
+        if taken.is_none() {
+            self.pending.store(false, Ordering::Release);
+            // Somebody may have come in between.
+            if !self.queue.is_empty() {
+                self.pending.store(true, Ordering::Release);
+            }
+        }
+        taken
+    }
+
+    /// Symptoms that were dropped because the queue was full.
+    pub fn dropped(&self) -> u64 {
+        self.dropped.load(Ordering::Relaxed)
+    }
+}

@@ -1,0 +1,121 @@
+//! Recovery of one component, on the thread of its executor: in place where the instance can still
+//! be called, else by a fresh instance; by the call order of the OPRoS life cycle (Ahn et al. 2012,
+//! section 3.4 and figure 9).
+
+use system_model::life_cycle::{LifeCycleState, Operation};
+
+use super::standby::Standbys;
+use crate::component::{Component, OperationError};
+use crate::guard::Callback;
+use crate::guard::loss::Loss;
+
+/// Recovers a component by its own library. The note says what a person may want to know.
+///
+/// # Errors
+/// Why it did not succeed; the component is in ERROR then.
+pub fn reset(
+    component: &mut Component,
+    standbys: &Standbys,
+    checkpoint_before_ns: Option<u64>,
+    loss: &Loss,
+) -> Result<String, String> {
+    if !component.is_alive() {
+        return replace(
+            component,
+            standbys,
+            component.variant(),
+            checkpoint_before_ns,
+            loss,
+        );
+    }
+    if component.state() == LifeCycleState::Active {
+        component
+            .operate(Operation::StopOnError, loss)
+            .map_err(|error| words("onError", &error))?;
+    }
+    component.begin_incarnation(component.incarnation() + 1);
+    for (callback, name) in [
+        (Callback::Reset, "onReset"),
+        (Callback::Initialize, "onInitialize"),
+    ] {
+        component
+            .call_back(callback, name, loss)
+            .map_err(|error| words(name, &error))?;
+    }
+    let note = restore(component, checkpoint_before_ns, loss)?;
+    start(component, loss)?;
+    Ok(note)
+}
+
+/// Puts a fresh instance of one of the component's libraries in its place.
+///
+/// # Errors
+/// Why it did not succeed; the component is as it was before.
+pub fn replace(
+    component: &mut Component,
+    standbys: &Standbys,
+    variant: usize,
+    checkpoint_before_ns: Option<u64>,
+    loss: &Loss,
+) -> Result<String, String> {
+    let (mut fresh, readiness) = standbys.take(variant)?;
+    if component.is_alive() {
+        give_up(component, loss);
+    }
+    let prepared = standbys.bring_up(&mut fresh, loss);
+    prepared.map_err(|reason| format!("{readiness}: {reason}"))?;
+    fresh.succeed(component);
+    fresh.set_variant(variant);
+    let mut predecessor = std::mem::replace(component, fresh);
+    // Nothing of a quarantined instance is freed; one that could be called has been destroyed.
+    predecessor.retire();
+    let note = restore(component, checkpoint_before_ns, loss)?;
+    start(component, loss)?;
+    Ok(match note.as_str() {
+        "" => readiness.to_owned(),
+        note => format!("{readiness}, {note}"),
+    })
+}
+
+/// The old instance lets go of its devices. That it fails at that is on record and changes nothing.
+fn give_up(component: &mut Component, loss: &Loss) {
+    if component.is_active() {
+        let _recorded = component.operate(Operation::StopOnError, loss);
+    }
+    let _recorded = component.operate(Operation::Destroy, loss);
+}
+
+fn start(component: &mut Component, loss: &Loss) -> Result<(), String> {
+    component.enter_ready();
+    component
+        .operate(Operation::Start, loss)
+        .map_err(|error| words("onStart", &error))
+}
+
+/// Copies the newest certified checkpoint back and calls `onRecover`.
+fn restore(
+    component: &mut Component,
+    checkpoint_before_ns: Option<u64>,
+    loss: &Loss,
+) -> Result<String, String> {
+    let Some(before_ns) = checkpoint_before_ns else {
+        return Ok(String::new());
+    };
+    let (restored, note) = component.restore_checkpoint(before_ns);
+    if restored {
+        component
+            .call_back(Callback::Recover, "onRecover", loss)
+            .map_err(|error| words("onRecover", &error))?;
+    }
+    Ok(note)
+}
+
+/// Why an operation failed, in words.
+pub(super) fn words(what: &str, error: &OperationError) -> String {
+    match error {
+        OperationError::Refused => format!("{what} is not allowed in its state"),
+        OperationError::Failed(fault) => {
+            format!("{} in {}: {}", fault.kind, fault.callback, fault.message)
+        }
+    }
+}

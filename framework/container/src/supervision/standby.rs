@@ -1,0 +1,109 @@
+//! Instances that stand by for a component: made ahead as far as the rules say, from the factory
+//! when there is none.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use system_model::life_cycle::{LifeCycleState, Operation};
+use system_model::rules::Preload;
+
+use super::recovery::words;
+use crate::assembly::Factory;
+use crate::component::Component;
+use crate::guard::loss::Loss;
+use crate::status::ComponentStatus;
+
+/// The standbys of one component.
+pub struct Standbys {
+    factory: Arc<Factory>,
+    ready: Mutex<Vec<Standby>>,
+}
+
+struct Standby {
+    variant: usize,
+    component: Component,
+}
+
+impl Standbys {
+    /// None yet.
+    pub fn new(factory: Arc<Factory>) -> Self {
+        Self {
+            factory,
+            ready: Mutex::default(),
+        }
+    }
+
+    /// Where instances come from.
+    pub fn factory(&self) -> &Factory {
+        &self.factory
+    }
+
+    /// Variants of which the rules want one prepared, and none is.
+    pub fn wanting(&self) -> Vec<usize> {
+        let ready = self.ready();
+        let variants = self.factory.variants().iter().enumerate();
+        variants
+            .filter(|(_, variant)| variant.preload != Preload::Cold)
+            .map(|(index, _)| index)
+            .filter(|index| !ready.iter().any(|standby| standby.variant == *index))
+            .collect()
+    }
+
+    /// Prepares one of a variant, as far as the rules say.
+    ///
+    /// # Errors
+    /// Why not; then it is made when it is needed.
+    pub fn prepare(&self, variant: usize, loss: &Loss) -> Result<(), String> {
+        let mut component = self.make(variant)?;
+        component
+            .construct(loss)
+            .map_err(|error| words("create", &error))?;
+        if self.factory.variants()[variant].preload == Preload::Warm {
+            component
+                .operate(Operation::Initialize, loss)
+                .map_err(|error| words("onInitialize", &error))?;
+        }
+        component.set_constructed();
+        self.ready().push(Standby { variant, component });
+        Ok(())
+    }
+
+    /// An instance of a variant, and how far it was prepared.
+    pub(super) fn take(&self, variant: usize) -> Result<(Component, &'static str), String> {
+        let mut ready = self.ready();
+        let found = ready.iter().position(|standby| standby.variant == variant);
+        if let Some(found) = found {
+            let component = ready.swap_remove(found).component;
+            let readiness = match component.state() {
+                LifeCycleState::Ready => "by a warm standby",
+                _ => "by a loaded standby",
+            };
+            return Ok((component, readiness));
+        }
+        drop(ready);
+        Ok((self.make(variant)?, "by a fresh instance"))
+    }
+
+    /// Brings an instance to READY, from wherever it is.
+    pub(super) fn bring_up(&self, component: &mut Component, loss: &Loss) -> Result<(), String> {
+        if !component.is_constructed() {
+            component
+                .construct(loss)
+                .map_err(|error| words("create", &error))?;
+            component.set_constructed();
+        }
+        component
+            .operate(Operation::Initialize, loss)
+            .map_err(|error| words("onInitialize", &error))
+    }
+
+    fn make(&self, variant: usize) -> Result<Component, String> {
+        let name = self.factory.variants().first();
+        let name = name.map_or_else(String::new, |first| first.specification.name.clone());
+        let status = Arc::new(ComponentStatus::standby(name));
+        self.factory.make(variant, status)
+    }
+
+    fn ready(&self) -> MutexGuard<'_, Vec<Standby>> {
+        self.ready.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

@@ -1,0 +1,355 @@
+//! The thin shell around the fault manager: observations go in, effects are carried out.
+//!
+//! Whoever has observed something calls [`Supervisor::attend`] afterwards; nobody waits: if another
+//! thread is at it, that thread sees the observation too. What is to be done with a component is an
+//! order to its executor.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::time::{Duration, Instant};
+
+use crossbeam::channel::{Receiver, Sender, bounded};
+use fault_manager::{
+    Action, ActionId, ActionOutcome, Effect, FaultManager, Observation, PlannedAction, Verdict,
+};
+
+use super::Monitors;
+use super::emergency::Emergency;
+use super::orders::{Order, Orders, Task};
+use super::standby::Standbys;
+use crate::component::Environment;
+use crate::event_log::Event;
+use crate::guard::loss::Loss;
+use crate::wake::Wake;
+
+/// Verdicts whose decision was timed; older ones are not recorded any more.
+const MOST_DECISIONS: usize = 256;
+
+/// The shell.
+pub struct Supervisor {
+    environment: Arc<Environment>,
+    core: Mutex<Core>,
+    /// By component: who runs it.
+    orders: Vec<Arc<Orders>>,
+    standbys: Vec<Standbys>,
+    emergency: Emergency,
+    monitors: Mutex<Monitors>,
+    /// Wakes the thread that looks after time.
+    wake: Wake,
+    /// Components of which a standby was used, for the thread that prepares another.
+    wanted: Sender<usize>,
+}
+
+struct Core {
+    manager: FaultManager,
+    /// Orders whose time has not come.
+    later: Vec<(u64, Order)>,
+    /// How long decisions took, by fault.
+    decisions: Vec<(u64, Duration)>,
+}
+
+impl Supervisor {
+    /// A shell around `manager` for components whose executors take orders by `orders`.
+    pub fn new(
+        environment: Arc<Environment>,
+        manager: FaultManager,
+        orders: Vec<Arc<Orders>>,
+        standbys: Vec<Standbys>,
+        emergency: Emergency,
+        monitors: Monitors,
+    ) -> (Self, Receiver<usize>) {
+        let (wanted, wants) = bounded(standbys.len().max(1));
+        let supervisor = Self {
+            environment,
+            core: Mutex::new(Core {
+                manager,
+                later: Vec::new(),
+                decisions: Vec::new(),
+            }),
+            orders,
+            standbys,
+            emergency,
+            monitors: Mutex::new(monitors),
+            wake: Wake::default(),
+            wanted,
+        };
+        (supervisor, wants)
+    }
+
+    /// Prepares all standbys of a component that the rules want and are not there. One that cannot
+    /// be prepared is made when it is needed.
+    pub fn prepare_standbys(&self, component: usize, loss: &Loss) {
+        let Some(standbys) = self.standbys.get(component) else {
+            return;
+        };
+        for variant in standbys.wanting() {
+            if let Err(reason) = standbys.prepare(variant, loss) {
+                let name = &standbys.factory().variants()[variant].specification;
+                let message = format!(
+                    "no standby '{}' for '{}' could be prepared: {reason}",
+                    name.type_name, name.name
+                );
+                self.environment
+                    .events
+                    .record(self.environment.clock.now_ns(), Event::Notice { message });
+            }
+        }
+    }
+
+    /// Asks the thread that prepares standbys for what is missing.
+    pub fn want_standbys(&self, component: usize) {
+        // Full only if every component is on it already: then this one is looked at, too.
+        let _on_it = self.wanted.try_send(component);
+    }
+
+    /// What all components share.
+    pub fn environment(&self) -> &Arc<Environment> {
+        &self.environment
+    }
+
+    /// The standbys of a component.
+    pub fn standbys(&self, component: usize) -> Option<&Standbys> {
+        self.standbys.get(component)
+    }
+
+    /// The emergency stop.
+    pub fn emergency(&self) -> &Emergency {
+        &self.emergency
+    }
+
+    /// Lets the fault manager see what was observed, if anything was.
+    #[inline]
+    pub fn attend(&self) {
+        if self.environment.observations.is_pending() {
+            self.process();
+        }
+    }
+
+    /// Leaves an observation and lets the fault manager see it.
+    pub fn observe(&self, observation: Observation) {
+        self.environment.observations.report(observation);
+        self.process();
+    }
+
+    /// What time brings: orders that are due, deadlines of the fault manager.
+    pub fn tick(&self) {
+        let now_ns = self.environment.clock.now_ns();
+        self.monitors
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .look(Duration::from_nanos(now_ns), &self.environment.observations);
+        let (due, wants_tick) = {
+            let mut core = self.lock();
+            let mut due = Vec::new();
+            core.later.retain(|(time_ns, order)| {
+                let is_due = *time_ns <= now_ns;
+                if is_due {
+                    due.push(order.clone());
+                }
+                !is_due
+            });
+            let wants_tick = core
+                .manager
+                .due()
+                .is_some_and(|due| nanoseconds(due) <= now_ns);
+            (due, wants_tick)
+        };
+        for order in due {
+            self.give(order);
+        }
+        if wants_tick {
+            self.environment.observations.report(Observation::Tick);
+        }
+        self.attend();
+    }
+
+    /// When the next tick is due, in nanoseconds of the container's clock.
+    pub fn due_ns(&self) -> Option<u64> {
+        let core = self.lock();
+        let later = core.later.iter().map(|(time_ns, _)| *time_ns).min();
+        let manager = core.manager.due().map(nanoseconds);
+        let monitors = self
+            .monitors
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .due_ns();
+        [later, manager, monitors].into_iter().flatten().min()
+    }
+
+    /// Sleeps until something may be due, at most `limit`.
+    pub fn sleep(&self, limit: Duration) {
+        self.wake.sleep(limit);
+        self.wake.take();
+    }
+
+    /// Makes a thread that sleeps look again.
+    pub fn rouse(&self) {
+        self.wake.wake();
+    }
+
+    /// The verdicts on record, oldest first.
+    pub fn verdicts(&self) -> Vec<Verdict> {
+        self.lock().manager.verdicts().cloned().collect()
+    }
+
+    /// Whether the emergency stop is latched.
+    pub fn is_emergency(&self) -> bool {
+        self.lock().manager.is_emergency()
+    }
+
+    fn process(&self) {
+        while self.environment.observations.is_pending() {
+            let mut core = match self.core.try_lock() {
+                Ok(core) => core,
+                Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
+                // Whoever is at it looks again before it leaves.
+                Err(TryLockError::WouldBlock) => return,
+            };
+            while let Some(observation) = self.environment.observations.take() {
+                let now = self.environment.clock.now();
+                let start = Instant::now();
+                let effects = core.manager.observe(now, observation);
+                let took = if self.environment.clock.is_simulated() {
+                    Duration::ZERO
+                } else {
+                    start.elapsed()
+                };
+                for effect in effects {
+                    self.carry_out(&mut core, effect, took);
+                }
+            }
+            drop(core);
+            self.rouse();
+        }
+    }
+
+    fn carry_out(&self, core: &mut Core, effect: Effect, took: Duration) {
+        match effect {
+            Effect::Act(planned) => self.act(core, &planned),
+            Effect::Abandon(action) => core.later.retain(|(_, order)| order.action != Some(action)),
+            Effect::Record(verdict) => self.record(core, *verdict, took),
+            Effect::Rearm => {
+                for actuator in self.emergency.rearm(self.environment.clock.now_ns()) {
+                    self.give(Order {
+                        action: None,
+                        component: actuator,
+                        task: Task::Resume,
+                    });
+                }
+            }
+        }
+    }
+
+    fn act(&self, core: &mut Core, planned: &PlannedAction) {
+        let now_ns = self.environment.clock.now_ns();
+        let (component, task) = match &planned.action {
+            Action::EmergencyStop => return self.stop_in_emergency(core, planned.id, now_ns),
+            Action::Reset {
+                component,
+                checkpoint_before,
+            } => (
+                *component,
+                Task::Reset {
+                    checkpoint_before_ns: checkpoint_before.map(nanoseconds),
+                },
+            ),
+            Action::Replace {
+                component,
+                secondary,
+                checkpoint_before,
+            } => (
+                *component,
+                Task::Replace {
+                    variant: secondary + 1,
+                    checkpoint_before_ns: checkpoint_before.map(nanoseconds),
+                },
+            ),
+            Action::Stop { component } => (*component, Task::Stop),
+            Action::Destroy { component } => (*component, Task::Destroy),
+        };
+        let order = Order {
+            action: Some(planned.id),
+            component,
+            task,
+        };
+        let not_before_ns = nanoseconds(planned.not_before);
+        if not_before_ns > now_ns {
+            core.later.push((not_before_ns, order));
+        } else {
+            self.give(order);
+        }
+    }
+
+    /// Safe commands at once, from this thread; then each actuator by its category.
+    fn stop_in_emergency(&self, core: &mut Core, action: ActionId, now_ns: u64) {
+        let stops = self.emergency.engage(action);
+        if stops.is_empty() {
+            self.ended(action, "no component is declared an actuator");
+        }
+        for stop in stops {
+            self.give(Order {
+                action: Some(action),
+                component: stop.component,
+                task: Task::EmergencyStop {
+                    power_off: stop.power_off_after == Some(Duration::ZERO),
+                },
+            });
+            if let Some(after) = stop.power_off_after.filter(|after| !after.is_zero()) {
+                let order = Order {
+                    action: None,
+                    component: stop.component,
+                    task: Task::Stop,
+                };
+                core.later.push((now_ns + nanoseconds(after), order));
+            }
+        }
+    }
+
+    fn ended(&self, action: ActionId, note: &str) {
+        self.environment.observations.report(Observation::Ended {
+            action,
+            outcome: ActionOutcome::Done {
+                incarnation: 0,
+                note: note.to_owned(),
+            },
+        });
+    }
+
+    fn give(&self, order: Order) {
+        let action = order.action;
+        let orders = self.orders.get(order.component);
+        let given = orders.is_some_and(|orders| orders.give(order));
+        if let (false, Some(action)) = (given, action) {
+            self.environment.observations.report(Observation::Ended {
+                action,
+                outcome: ActionOutcome::Failed {
+                    reason: "too many orders wait for its executor".to_owned(),
+                },
+            });
+        }
+    }
+
+    fn record(&self, core: &mut Core, mut verdict: Verdict, took: Duration) {
+        let known = core.decisions.iter().find(|(id, _)| *id == verdict.id.0);
+        let decision = known.map_or(took, |(_, decision)| *decision);
+        if known.is_none() {
+            if core.decisions.len() >= MOST_DECISIONS {
+                core.decisions.remove(0);
+            }
+            core.decisions.push((verdict.id.0, took));
+        }
+        verdict.decision_us += u64::try_from(decision.as_micros()).unwrap_or(u64::MAX);
+        self.environment.events.record(
+            self.environment.clock.now_ns(),
+            Event::Verdict(Box::new(verdict)),
+        );
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Core> {
+        self.core.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// A duration in nanoseconds; 584 years are enough.
+pub(super) fn nanoseconds(duration: Duration) -> u64 {
+    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
+}

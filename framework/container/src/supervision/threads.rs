@@ -1,0 +1,99 @@
+//! The fault manager's threads where time is real: one that looks after time, and a lane on which
+//! standbys are prepared, because that runs code of components.
+
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use crossbeam::channel::Receiver;
+
+use super::Supervisor;
+use super::supervisor::nanoseconds;
+use crate::guard::loss::LostThread;
+use crate::lane::{Crew, Lane, Work};
+
+/// The longest sleep of the thread that looks after time, so that it notices its end.
+const LONGEST_SLEEP: Duration = Duration::from_millis(100);
+
+/// How often the lane that prepares standbys looks whether it is to end.
+const LOOK_PERIOD: Duration = Duration::from_millis(100);
+
+/// The threads, once started.
+#[derive(Default)]
+pub struct ManagerThreads {
+    stopping: Arc<AtomicBool>,
+    clock: Option<JoinHandle<()>>,
+    preparation: Option<Arc<Lane>>,
+}
+
+impl ManagerThreads {
+    /// Starts both.
+    ///
+    /// # Errors
+    /// If the system refuses a thread.
+    pub fn start(
+        &mut self,
+        supervisor: &Arc<Supervisor>,
+        crew: &Arc<Crew>,
+        wanted: Receiver<usize>,
+    ) -> io::Result<()> {
+        let (stopping, clocked) = (Arc::clone(&self.stopping), Arc::clone(supervisor));
+        let thread = std::thread::Builder::new()
+            .name("fault-manager".to_owned())
+            .spawn(move || look_after_time(&clocked, &stopping))?;
+        self.clock = Some(thread);
+        let work = Preparation {
+            supervisor: Arc::clone(supervisor),
+            wanted,
+        };
+        let lane = Lane::new("standbys", Box::new(work));
+        crew.start(&lane, || {})?;
+        self.preparation = Some(lane);
+        Ok(())
+    }
+
+    /// Ends both. A standby that hangs while it is prepared is left behind.
+    pub fn stop(&mut self, supervisor: &Supervisor) {
+        self.stopping.store(true, Ordering::Release);
+        supervisor.rouse();
+        if let Some(thread) = self.clock.take() {
+            // It ends within one tick; a panic in it has been printed.
+            let _panicked = thread.join();
+        }
+        if let Some(lane) = self.preparation.take() {
+            lane.stop();
+            let _left_behind = lane.wait(2 * LOOK_PERIOD);
+        }
+    }
+}
+
+fn look_after_time(supervisor: &Supervisor, stopping: &AtomicBool) {
+    while !stopping.load(Ordering::Acquire) {
+        supervisor.tick();
+        let now_ns = nanoseconds(supervisor.environment().clock.now());
+        let due_ns = supervisor.due_ns().unwrap_or(u64::MAX);
+        let sleep = Duration::from_nanos(due_ns.saturating_sub(now_ns));
+        supervisor.sleep(sleep.min(LONGEST_SLEEP));
+    }
+}
+
+/// Prepares standbys in place of those that were used.
+struct Preparation {
+    supervisor: Arc<Supervisor>,
+    wanted: Receiver<usize>,
+}
+
+impl Work for Preparation {
+    fn run(&mut self, lane: &Lane) {
+        while !lane.is_stopping() {
+            if let Ok(component) = self.wanted.recv_timeout(LOOK_PERIOD) {
+                self.supervisor.prepare_standbys(component, lane.loss());
+            }
+        }
+    }
+
+    /// The standby that was being prepared is lost with the thread: it is made when it is needed.
+    fn after_loss(&mut self, _lost: &LostThread) {}
+}

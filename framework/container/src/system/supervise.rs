@@ -1,0 +1,150 @@
+//! Puts the fault manager in charge of an assembled application: every rule finds its place.
+
+mod actuators;
+mod models;
+mod ports;
+mod rhythm;
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use crossbeam::channel::Receiver;
+use fault_manager::{DetectorId, DetectorKind, FaultManager, Scope};
+use system_model::process_model::ProcessModel;
+use system_model::rules::{ComponentRules, FaultRules};
+use system_model::specification::{ApplicationSpecification, Place};
+
+use crate::assembly::{Assembly, AssemblyProblem};
+use crate::component::{Component, Detectors, Environment};
+use crate::lane::SETUP_TOKEN;
+use crate::library::PortDescription;
+use crate::supervision::{Monitors, Orders, Standbys, Supervisor};
+
+/// Everything that rules are about.
+struct Subjects<'start> {
+    specification: &'start ApplicationSpecification,
+    rules: &'start FaultRules,
+    models: &'start [(String, ProcessModel)],
+    assembly: &'start Assembly,
+    manager: &'start FaultManager,
+}
+
+/// The shell around the application's fault manager, and the channel by which it asks for standbys.
+///
+/// # Errors
+/// Rules that do not fit the libraries.
+pub(super) fn supervise(
+    specification: &ApplicationSpecification,
+    rules: &FaultRules,
+    models: &[(String, ProcessModel)],
+    assembly: &Assembly,
+    environment: &Arc<Environment>,
+) -> Result<(Supervisor, Receiver<usize>), Vec<AssemblyProblem>> {
+    let manager = FaultManager::new(vec![Scope {
+        specification: specification.clone(),
+        rules: rules.clone(),
+    }]);
+    let subjects = Subjects {
+        specification,
+        rules,
+        models,
+        assembly,
+        manager: &manager,
+    };
+    let mut problems = Vec::new();
+    let mut monitors = Monitors::default();
+    for index in 0..assembly.components.len() {
+        subjects.instrument(index);
+    }
+    let emergency = actuators::find(&subjects);
+    ports::watch(&subjects, &emergency, &mut monitors, &mut problems);
+    rhythm::watch(&subjects, &mut monitors);
+    models::watch(&subjects, &mut monitors, &mut problems);
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    let orders = (0..assembly.components.len())
+        .map(|index| orders_of(assembly, index))
+        .collect();
+    let standbys = assembly
+        .factories
+        .iter()
+        .map(|factory| Standbys::new(Arc::clone(factory)))
+        .collect();
+    Ok(Supervisor::new(
+        Arc::clone(environment),
+        manager,
+        orders,
+        standbys,
+        emergency,
+        monitors,
+    ))
+}
+
+impl Subjects<'_> {
+    /// The rules of a component.
+    fn rules_of(&self, component: usize) -> Option<&ComponentRules> {
+        self.rules.components.get(component)
+    }
+
+    fn detector(&self, component: usize, kind: DetectorKind) -> Option<DetectorId> {
+        self.manager.detector(component, &kind)
+    }
+
+    /// A port of a component, with its index.
+    fn port(&self, component: usize, name: &str) -> Option<(usize, &PortDescription)> {
+        let ports = self.assembly.interfaces.get(component)?;
+        ports.iter().enumerate().find(|(_, port)| port.name == name)
+    }
+
+    fn with_component(&self, index: usize, change: impl FnOnce(&mut Component)) {
+        if let Some(cell) = self.assembly.components.get(index)
+            && let Some(mut component) = cell.enter(SETUP_TOKEN, Duration::ZERO)
+        {
+            change(&mut component);
+        }
+    }
+
+    fn instrument(&self, index: usize) {
+        let detectors = (|| {
+            Some(Detectors {
+                component: index,
+                exception: self.detector(index, DetectorKind::Exception)?,
+                hang: self.detector(index, DetectorKind::Hang)?,
+                reported: self.detector(index, DetectorKind::FaultEvent(None))?,
+            })
+        })();
+        let resurrect = self.rules_of(index).and_then(|it| it.resurrect.as_ref());
+        let backup = resurrect.and_then(|rule| rule.value.backup);
+        self.with_component(index, |component| {
+            if let Some(detectors) = detectors {
+                component.services_mut().set_detectors(detectors);
+            }
+            if let Some(period) = backup {
+                component.keep_checkpoints(period);
+            }
+        });
+    }
+}
+
+/// A rule that does not fit what a library says of itself.
+fn misfit(place: &Place, message: String, help: String) -> AssemblyProblem {
+    AssemblyProblem::Connection {
+        place: place.clone(),
+        message,
+        help,
+    }
+}
+
+fn orders_of(assembly: &Assembly, component: usize) -> Arc<Orders> {
+    let runs = |member: &crate::executor::Member| usize::try_from(member.number) == Ok(component);
+    let executor = assembly
+        .executors
+        .iter()
+        .find(|executor| executor.members.iter().any(runs));
+    // Every component is in an executor; one without would take no orders, and say so.
+    executor.map_or_else(
+        || Arc::new(Orders::new(Arc::default())),
+        |executor| Arc::clone(&executor.orders),
+    )
+}

@@ -1,0 +1,153 @@
+//! What the watchdog remembers of one lane: how long each callback that it is in has taken.
+
+use std::time::Duration;
+
+use crate::guard::CallLimit;
+use crate::guard::loss::DEEPEST_CALL_CHAIN;
+use crate::guard::watch::Inside;
+
+/// What is to be done about a lane.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// It is in no callback that is watched.
+    InNothing,
+    /// Its callback may become overdue after this time.
+    LookWithin(Duration),
+    /// Its callback is overdue.
+    Overdue,
+}
+
+/// One for each depth of service calls: the time in a callee is not its caller's.
+#[derive(Default)]
+pub(super) struct Record {
+    sightings: [Sighting; DEEPEST_CALL_CHAIN + 1],
+    last: Option<Last>,
+}
+
+#[derive(Default, Clone, Copy)]
+struct Sighting {
+    generation: u32,
+    spent: Duration,
+}
+
+/// The callback that was seen last, with the processor time of its thread then.
+#[derive(Clone, Copy)]
+struct Last {
+    generation: u32,
+    thread_time: Option<Duration>,
+}
+
+impl Record {
+    /// Looks at what the lane is in. `spent(t)` tells the processor time of the lane's thread, and
+    /// how much time its callback has used up since the last look, when that time was `t`.
+    pub(super) fn look(
+        &mut self,
+        inside: Inside,
+        spent: impl FnOnce(Option<Duration>) -> (Option<Duration>, Duration),
+    ) -> Verdict {
+        if inside.depth == 0 || inside.limit == CallLimit::NONE {
+            return Verdict::InNothing;
+        }
+        let last = self
+            .last
+            .filter(|last| last.generation == inside.generation);
+        let (thread_time, spent) = spent(last.and_then(|last| last.thread_time));
+        self.last = Some(Last {
+            generation: inside.generation,
+            thread_time,
+        });
+        let Some(sighting) = self.sightings.get_mut(inside.depth) else {
+            return Verdict::InNothing;
+        };
+        if sighting.generation != inside.generation {
+            *sighting = Sighting {
+                generation: inside.generation,
+                spent: Duration::ZERO,
+            };
+        } else if last.is_some() {
+            sighting.spent += spent;
+        }
+        match inside.limit.duration().checked_sub(sighting.spent) {
+            Some(left) if !left.is_zero() => Verdict::LookWithin(left),
+            _ => Verdict::Overdue,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: Duration = Duration::from_millis(1);
+
+    /// Generation, depth, limit in ms, time spent since the last look in ms; what follows: in ms
+    /// when to look again, 0 if overdue, `None` if nothing is watched.
+    type Look = (u32, usize, u32, u32, Option<u32>);
+
+    fn check(looks: &[Look]) {
+        let mut record = Record::default();
+        for (number, &(generation, depth, limit, spent, expected)) in looks.iter().enumerate() {
+            let inside = Inside {
+                generation,
+                depth,
+                limit: CallLimit::from(limit * MS),
+            };
+            let verdict = record.look(inside, |_since| (None, spent * MS));
+            let expected = match expected {
+                None => Verdict::InNothing,
+                Some(0) => Verdict::Overdue,
+                Some(left) => Verdict::LookWithin(left * MS),
+            };
+            assert_eq!(verdict, expected, "look {number} of {looks:?}");
+        }
+    }
+
+    #[test]
+    fn a_callback_is_overdue_after_its_limit_and_stays_so() {
+        check(&[
+            (1, 1, 30, 4, Some(30)),
+            (1, 1, 30, 20, Some(10)),
+            (1, 1, 30, 10, Some(0)),
+            (1, 1, 30, 0, Some(0)),
+        ]);
+    }
+
+    #[test]
+    fn another_callback_begins_anew() {
+        check(&[
+            (1, 1, 30, 0, Some(30)),
+            (1, 1, 30, 29, Some(1)),
+            (2, 1, 30, 29, Some(30)),
+            (2, 0, 30, 29, None),
+            (3, 1, 30, 29, Some(30)),
+        ]);
+    }
+
+    #[test]
+    fn time_in_a_callee_is_the_callees() {
+        check(&[
+            (1, 1, 30, 0, Some(30)),
+            (1, 1, 30, 20, Some(10)),
+            (2, 2, 50, 5, Some(50)),
+            (2, 2, 50, 49, Some(1)),
+            // Back in the caller: what was spent meanwhile is not known to be its own.
+            (1, 1, 30, 9, Some(10)),
+            (1, 1, 30, 9, Some(1)),
+            (1, 1, 30, 1, Some(0)),
+        ]);
+    }
+
+    #[test]
+    fn the_container_answering_does_not_count() {
+        check(&[
+            (1, 1, 30, 0, Some(30)),
+            (1, 1, 0, 1000, None),
+            (1, 1, 30, 4, Some(26)),
+        ]);
+    }
+
+    #[test]
+    fn what_is_not_limited_is_not_watched() {
+        check(&[(1, 1, 0, 0, None), (1, 1, 0, 100_000, None)]);
+    }
+}

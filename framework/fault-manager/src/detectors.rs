@@ -1,0 +1,201 @@
+//! Which detectors there are, and by which terms each symptom is judged.
+
+use system_model::profile::Located;
+use system_model::rules::{
+    Arming, ComponentRules, ComponentSeverity, Confirmation, ExceptionClass, ExceptionRule,
+    FaultRules, HeartbeatRule, Judgement, PortRules,
+};
+use system_model::specification::Place;
+
+use crate::observation::{Detector, DetectorId, DetectorKind, Symptom};
+use crate::system::{Component, Scope, System};
+
+/// All detectors, in the order of components and of their rules.
+#[derive(Debug)]
+pub(crate) struct Detectors {
+    pub all: Vec<Detector>,
+    /// Those of each component.
+    by_component: Vec<Vec<DetectorId>>,
+}
+
+/// By what a symptom is judged.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Terms {
+    pub severity: ComponentSeverity,
+    pub confirmation: Confirmation,
+    pub latched: bool,
+    pub place: Option<Place>,
+    pub arming: Arming,
+}
+
+impl Detectors {
+    /// One for every rule; runtime exceptions, hangs and reports of every component always.
+    pub fn new(scopes: &[Scope], system: &System) -> Self {
+        let mut detectors = Self {
+            all: Vec::new(),
+            by_component: vec![Vec::new(); system.components.len()],
+        };
+        for (application, scope) in scopes.iter().enumerate() {
+            let members = system.applications[application].members.clone();
+            for index in members.clone() {
+                detectors.add_defaults(index, &system.components[index].rules);
+                detectors.add_rhythm(index, members.start, &scope.rules, system);
+                detectors.add_ports(index, &system.components[index].rules);
+            }
+            detectors.add_helpers(members.start, &scope.rules);
+        }
+        detectors
+    }
+
+    /// The detector of a component, if there is one.
+    pub fn find(&self, component: usize, kind: &DetectorKind) -> Option<DetectorId> {
+        let own = self.by_component.get(component)?;
+        own.iter().copied().find(|id| self.all[id.0].kind == *kind)
+    }
+
+    /// By what a symptom of a detector is judged.
+    pub fn terms(&self, system: &System, symptom: &Symptom) -> Terms {
+        let detector = &self.all[symptom.detector.0];
+        let rules = &system.components[detector.component].rules;
+        let exception = match detector.kind {
+            DetectorKind::Exception => narrowest_exception(rules, symptom),
+            DetectorKind::Hang if rules.watchdog.is_none() => narrowest_exception(rules, symptom),
+            _ => None,
+        };
+        let judgement = exception.map_or(detector.judgement, |rule| rule.value.judgement);
+        let severity = match detector.kind {
+            DetectorKind::Exception => None,
+            _ => detector.judgement.severity,
+        };
+        Terms {
+            severity: severity.unwrap_or_else(|| match detector.kind {
+                DetectorKind::Exception | DetectorKind::Hang => {
+                    rules.exception_severity(symptom.kind, symptom.return_code)
+                }
+                _ => rules.default_severity(),
+            }),
+            confirmation: rules.confirmation(&judgement),
+            latched: judgement.latched,
+            place: exception.map_or(detector.place.clone(), |rule| Some(rule.place.clone())),
+            arming: judgement.arming,
+        }
+    }
+
+    fn add(&mut self, component: usize, kind: DetectorKind, rule: Option<(Judgement, &Place)>) {
+        let Some(own) = self.by_component.get_mut(component) else {
+            return;
+        };
+        own.push(DetectorId(self.all.len()));
+        self.all.push(Detector {
+            component,
+            kind,
+            judgement: rule.map(|(judgement, _)| judgement).unwrap_or_default(),
+            place: rule.map(|(_, place)| place.clone()),
+        });
+    }
+
+    fn add_defaults(&mut self, component: usize, rules: &ComponentRules) {
+        let any = rules
+            .exceptions
+            .iter()
+            .find(|rule| rule.value.class == ExceptionClass::Any);
+        let any = any.map(|rule| (rule.value.judgement, &rule.place));
+        self.add(component, DetectorKind::Exception, any);
+        let watchdog = rules.watchdog.as_ref();
+        let watchdog = watchdog.map(|rule| (rule.value.judgement, &rule.place));
+        self.add(component, DetectorKind::Hang, watchdog);
+        self.add(component, DetectorKind::FaultEvent(None), None);
+        for (index, rule) in rules.fault_events.iter().enumerate() {
+            let kind = DetectorKind::FaultEvent(Some(index));
+            self.add(component, kind, Some((rule.value.judgement, &rule.place)));
+        }
+    }
+
+    /// Overruns and heartbeats: the narrowest rule counts, the component's own before that of its
+    /// executor, its application, its node.
+    fn add_rhythm(&mut self, index: usize, first: usize, rules: &FaultRules, system: &System) {
+        let component = &system.components[index];
+        let executor = rules.executors.iter().find(|rule| {
+            let leader = system.components.get(first + rule.first_component);
+            leader.is_some_and(|leader| leader.executor == component.executor)
+        });
+        let inherited = executor.and_then(|rule| rule.overrun.as_ref());
+        if let Some(rule) = component.rules.overrun.as_ref().or(inherited) {
+            let judged = Some((rule.value.judgement, &rule.place));
+            self.add(index, DetectorKind::Overrun, judged);
+        }
+        let inherited = executor
+            .and_then(|rule| rule.heartbeat.as_ref())
+            .or_else(|| inherited_heartbeat(rules, component));
+        if let Some(rule) = component.rules.heartbeat.as_ref().or(inherited) {
+            let judged = Some((rule.value.judgement, &rule.place));
+            self.add(index, DetectorKind::Heartbeat, judged);
+        }
+    }
+
+    fn add_ports(&mut self, component: usize, rules: &ComponentRules) {
+        for (port, rules) in rules.ports.iter().enumerate() {
+            self.add_port(component, port, rules);
+        }
+    }
+
+    fn add_port(&mut self, component: usize, port: usize, rules: &PortRules) {
+        let checks = &rules.checks;
+        for (index, rule) in checks.validity.iter().enumerate() {
+            let kind = DetectorKind::Validity { port, rule: index };
+            self.add(component, kind, Some((rule.value.judgement, &rule.place)));
+        }
+        if let Some(rule) = &checks.freshness {
+            let kind = DetectorKind::Freshness { port };
+            self.add(component, kind, Some((rule.value.judgement, &rule.place)));
+        }
+        for (index, rule) in checks.rate_of_change.iter().enumerate() {
+            let kind = DetectorKind::RateOfChange { port, rule: index };
+            self.add(component, kind, Some((rule.value.judgement, &rule.place)));
+        }
+        for (index, rule) in checks.stuck.iter().enumerate() {
+            let kind = DetectorKind::Stuck { port, rule: index };
+            self.add(component, kind, Some((rule.value.judgement, &rule.place)));
+        }
+    }
+
+    /// Process models blame the component of their first output, voters each of their sources.
+    fn add_helpers(&mut self, first: usize, rules: &FaultRules) {
+        for (monitor, rule) in rules.monitors.iter().enumerate() {
+            if let Some(output) = rule.outputs.first() {
+                let judged = Some((rule.rule.value.judgement, &rule.rule.place));
+                let kind = DetectorKind::ProcessModel { monitor };
+                self.add(first + output.component, kind, judged);
+            }
+        }
+        for (voting, rule) in rules.votings.iter().enumerate() {
+            for (source, end) in rule.sources.iter().enumerate() {
+                let judged = Some((rule.rule.value.judgement, &rule.rule.place));
+                let kind = DetectorKind::Voting { voting, source };
+                self.add(first + end.port.component, kind, judged);
+            }
+        }
+    }
+}
+
+/// The heartbeat of the application or of the node, for a component that works in periods.
+fn inherited_heartbeat<'a>(
+    rules: &'a FaultRules,
+    component: &Component,
+) -> Option<&'a Located<HeartbeatRule>> {
+    let node = rules.nodes.iter().find(|(name, _)| *name == component.node);
+    let rule = rules.heartbeat.as_ref().or(node.map(|(_, rule)| rule));
+    rule.filter(|_| component.periodic)
+}
+
+/// The rule by which `ComponentRules::exception_severity` decides.
+fn narrowest_exception<'a>(
+    rules: &'a ComponentRules,
+    symptom: &Symptom,
+) -> Option<&'a Located<ExceptionRule>> {
+    let matching = rules
+        .exceptions
+        .iter()
+        .filter(|rule| rule.value.class.includes(symptom.kind, symptom.return_code));
+    matching.max_by_key(|rule| rule.value.class.narrowness())
+}

@@ -1,0 +1,176 @@
+//! The ladder of one component: resets within their budget, then the secondaries in order, then
+//! nothing is left but what the application says.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use system_model::rules::{FaultRule, MAX_RETRY_MAX};
+
+use crate::system::Component;
+
+/// How far a component has climbed.
+#[derive(Debug, Default)]
+pub(crate) struct Ladder {
+    /// When the last resets of the present instance begin, oldest first.
+    resets: VecDeque<Duration>,
+    /// Index of the secondary that is next.
+    next_secondary: usize,
+}
+
+/// What is to be tried next.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Rung {
+    /// Recovery in place, not before a time.
+    Reset {
+        /// Number of this reset within the window, from 1.
+        attempt: u32,
+        not_before: Duration,
+    },
+    /// The secondary of this index.
+    Replace(usize),
+    /// Nothing that brings the component back.
+    Exhausted,
+}
+
+impl Ladder {
+    /// Takes the next rung.
+    pub fn climb(&mut self, component: &Component, now: Duration) -> Rung {
+        let rule = &component.fault;
+        let may_reset = component
+            .rules
+            .resurrect
+            .as_ref()
+            .is_none_or(|rule| rule.value.reset);
+        let used = self.within_window(rule, now);
+        if may_reset && used < rule.retry_max.min(MAX_RETRY_MAX) {
+            let last = self.resets.back().filter(|_| used > 0);
+            let not_before = last.map_or(now, |last| last.saturating_add(rule.backoff).max(now));
+            self.resets.push_back(not_before);
+            return Rung::Reset {
+                attempt: used + 1,
+                not_before,
+            };
+        }
+        if self.next_secondary < component.rules.secondaries.len() {
+            let secondary = self.next_secondary;
+            self.next_secondary += 1;
+            self.resets.clear();
+            return Rung::Replace(secondary);
+        }
+        Rung::Exhausted
+    }
+
+    /// An operator has looked at it: resets are counted from nothing. A secondary that was used up
+    /// stays so.
+    pub fn renew(&mut self) {
+        self.resets.clear();
+    }
+
+    /// Forgets the resets that have left the window and counts the others.
+    fn within_window(&mut self, rule: &FaultRule, now: Duration) -> u32 {
+        let left = |reset: &Duration| reset.saturating_add(rule.window) <= now;
+        while self.resets.front().is_some_and(left) {
+            self.resets.pop_front();
+        }
+        u32::try_from(self.resets.len()).unwrap_or(u32::MAX)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use system_model::profile::Located;
+    use system_model::rules::{ApplicationSeverity, ComponentRules, ResurrectRule};
+    use system_model::specification::Place;
+
+    use super::*;
+
+    fn component(reset: Option<bool>, retry_max: u32, window: u64, backoff: u64) -> Component {
+        let resurrect = reset.map(|reset| Located {
+            value: ResurrectRule {
+                reset,
+                backup: None,
+                persist: false,
+            },
+            place: Place::default(),
+        });
+        Component {
+            name: String::new(),
+            node: String::new(),
+            application: 0,
+            executor: 0,
+            periodic: true,
+            rules: ComponentRules {
+                resurrect,
+                ..ComponentRules::default()
+            },
+            fault: FaultRule {
+                retry_max,
+                window: Duration::from_millis(window),
+                backoff: Duration::from_millis(backoff),
+                severity: ApplicationSeverity::Local,
+            },
+            recovery_deadline: Duration::from_secs(1),
+        }
+    }
+
+    /// Failures at these times; the start of the reset that follows each, or that none does.
+    #[test]
+    fn resets_are_counted_within_the_window_and_wait_for_the_backoff() {
+        type Expected = &'static [(u64, Option<(u32, u64)>)];
+        let cases: [(&str, Component, Expected); 6] = [
+            (
+                "budget of two",
+                component(None, 2, 1000, 0),
+                &[
+                    (0, Some((1, 0))),
+                    (5, Some((2, 5))),
+                    (10, None),
+                    (999, None),
+                ],
+            ),
+            (
+                "the first one leaves the window",
+                component(Some(true), 2, 1000, 0),
+                &[
+                    (0, Some((1, 0))),
+                    (500, Some((2, 500))),
+                    (1000, Some((2, 1000))),
+                    (1400, None),
+                    (1500, Some((2, 1500))),
+                ],
+            ),
+            (
+                "backoff counts from the last reset, and not for the first of a window",
+                component(None, 3, 1000, 100),
+                &[
+                    (0, Some((1, 0))),
+                    (5, Some((2, 100))),
+                    (105, Some((3, 200))),
+                    (1250, Some((1, 1250))),
+                ],
+            ),
+            (
+                "forbidden",
+                component(Some(false), 3, 1000, 0),
+                &[(0, None)],
+            ),
+            ("no budget", component(None, 0, 1000, 0), &[(0, None)]),
+            (
+                "time stands still",
+                component(None, 2, 1000, 0),
+                &[(7, Some((1, 7))), (7, Some((2, 7))), (7, None)],
+            ),
+        ];
+        for (case, component, failures) in cases {
+            let mut ladder = Ladder::default();
+            for (at, expected) in failures {
+                let rung = ladder.climb(&component, Duration::from_millis(*at));
+                let reset = expected.map(|(attempt, not_before)| Rung::Reset {
+                    attempt,
+                    not_before: Duration::from_millis(not_before),
+                });
+                assert_eq!(rung, reset.unwrap_or(Rung::Exhausted), "{case}, at {at}");
+            }
+        }
+    }
+}

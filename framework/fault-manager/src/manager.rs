@@ -1,0 +1,166 @@
+//! The face of the fault manager: observations in, effects out.
+
+use std::collections::{BTreeSet, VecDeque};
+use std::time::Duration;
+
+use crate::detectors::Detectors;
+use crate::emergency::Emergency;
+use crate::graph::{Graph, Level, Outage};
+use crate::history::History;
+use crate::observation::{Detector, DetectorId, DetectorKind, Observation};
+use crate::plan::Effect;
+use crate::state::{ComponentState, Condition};
+use crate::system::{Scope, System};
+use crate::verdict::{FaultId, Verdict};
+
+/// Detection, diagnosis and recovery planning for all applications of a container.
+///
+/// A pure state machine: what it does depends on the scopes, the observations and their times alone,
+/// and the same sequence always has the same effects. It answers every observation at once and has a
+/// bound for everything it keeps.
+#[derive(Debug)]
+pub struct FaultManager {
+    pub(crate) system: System,
+    pub(crate) graph: Graph,
+    pub(crate) detectors: Detectors,
+    pub(crate) history: History,
+    pub(crate) components: Vec<ComponentState>,
+    /// Applications that were stopped as a whole.
+    pub(crate) stopped_applications: Vec<bool>,
+    pub(crate) emergency: Option<Emergency>,
+    pub(crate) running: bool,
+    /// The latest time that was told.
+    pub(crate) now: Duration,
+    pub(crate) last_action: u64,
+    /// Effects of the observation at hand.
+    pub(crate) effects: Vec<Effect>,
+    /// Faults whose verdicts have changed by the observation at hand.
+    pub(crate) changed: BTreeSet<FaultId>,
+    /// Faults whose handling has ended by the observation at hand: others may wait for that.
+    pub(crate) finished: VecDeque<FaultId>,
+}
+
+impl FaultManager {
+    /// For the applications of one container. Indices of components count through all of them, one
+    /// application after the other.
+    pub fn new(applications: Vec<Scope>) -> Self {
+        let system = System::new(&applications);
+        Self {
+            graph: Graph::new(&applications, &system),
+            detectors: Detectors::new(&applications, &system),
+            history: History::new(),
+            components: system
+                .components
+                .iter()
+                .map(|_| ComponentState::default())
+                .collect(),
+            stopped_applications: vec![false; system.applications.len()],
+            emergency: None,
+            running: false,
+            now: Duration::ZERO,
+            last_action: 0,
+            effects: Vec::new(),
+            changed: BTreeSet::new(),
+            finished: VecDeque::new(),
+            system,
+        }
+    }
+
+    /// Everything that can raise symptoms, as rules and defaults have it; [`DetectorId`] is the
+    /// index. Every component has one for runtime exceptions, for hangs and for what it reports.
+    /// `overrun` and `heartbeat` come from the narrowest rule: the component's own, else that of its
+    /// executor, its application, its node; the latter two only for components that work in periods.
+    pub fn detectors(&self) -> &[Detector] {
+        &self.detectors.all
+    }
+
+    /// The detector of a component, if there is one. `component` is the component to blame.
+    pub fn detector(&self, component: usize, kind: &DetectorKind) -> Option<DetectorId> {
+        self.detectors.find(component, kind)
+    }
+
+    /// Takes an observation in, made at `now` by the clock of the applications. A time before an
+    /// earlier one counts as that. Detectors, actions and components that do not exist are ignored.
+    ///
+    /// Actions come before the records that tell of them, so that nothing waits for a record; a
+    /// verdict that changes several times by one observation is recorded once.
+    pub fn observe(&mut self, now: Duration, observation: Observation) -> Vec<Effect> {
+        let before = self.now.max(now);
+        self.now = before;
+        // What was due earlier comes first; what is due just now leaves the observation the lead.
+        self.elapse(|due| due < before);
+        match observation {
+            Observation::Running => self.run(),
+            Observation::Symptom(symptom) => self.symptom(*symptom),
+            Observation::Passed(detector) => self.passed(detector),
+            Observation::Ended { action, outcome } => self.ended(action, outcome),
+            Observation::Works {
+                component,
+                incarnation,
+            } => self.works(component, incarnation),
+            Observation::Clear(None) => self.clear_all(),
+            Observation::Clear(Some(id)) => self.clear(id),
+            Observation::Tick => {}
+        }
+        self.elapse(|due| due <= before);
+        self.record();
+        std::mem::take(&mut self.effects)
+    }
+
+    /// When the next [`Observation::Tick`] is wanted at the latest: the deadline of an action, or
+    /// the end of a debounce or of the quiet time after a fault. `not_before` of an action is the
+    /// container's own matter.
+    pub fn due(&self) -> Option<Duration> {
+        let actions = self.components.iter().flat_map(|state| &state.work);
+        let actions = actions.map(|work| work.deadline).min();
+        let emergency = self.emergency.as_ref().and_then(Emergency::deadline);
+        let lives = self.history.earliest(|fault| self.life_due(fault));
+        [actions, emergency, lives].into_iter().flatten().min()
+    }
+
+    /// All faults that are not cleared, and the last of those that are, oldest first.
+    pub fn verdicts(&self) -> impl Iterator<Item = &Verdict> {
+        self.history.all().map(|fault| &fault.verdict)
+    }
+
+    /// Whether an emergency stop is latched.
+    pub fn is_emergency(&self) -> bool {
+        self.emergency.is_some()
+    }
+
+    /// How a component is doing; `None` for an index that no component has.
+    pub fn condition(&self, component: usize) -> Option<Condition> {
+        let state = self.components.get(component)?;
+        let waits = || {
+            self.history
+                .all()
+                .any(|fault| fault.component == component && fault.waits.is_some() && !fault.runs)
+        };
+        Some(match &state.down {
+            Some(down) => down.condition,
+            None if state.work.is_some() => Condition::Recovering,
+            None if waits() => Condition::Waiting,
+            None => Condition::Working,
+        })
+    }
+
+    /// What is down at the moment.
+    pub(crate) fn outage(&self) -> Outage {
+        let level = |state: &ComponentState| state.down.map_or(Level::Up, |down| down.level());
+        Outage {
+            components: self.components.iter().map(level).collect(),
+            applications: self.stopped_applications.clone(),
+        }
+    }
+
+    /// Puts the verdicts on record that have changed.
+    fn record(&mut self) {
+        for id in std::mem::take(&mut self.changed) {
+            if let Some(fault) = self.history.get(id) {
+                let verdict = Box::new(fault.verdict.clone());
+                self.effects.push(Effect::Record(verdict));
+            }
+        }
+        self.history.trim();
+    }
+}

@@ -1,0 +1,228 @@
+//! A component does not return; it alone is broken off and goes to ERROR, the others go on.
+
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use container::assembly::{LibraryOptions, assemble};
+use container::clock::Clock;
+use container::component::{CallLimits, ComponentCell, Environment};
+use container::device::Devices;
+use container::event_log::EventLog;
+use container::guard::loss::LostThread;
+use container::lane::{Crew, Lane, Work};
+use container::library::LibrarySearch;
+use system_model::life_cycle::{LifeCycleState, Operation};
+use system_profile::{LoadOptions, load_application};
+use tests::{Application, Member, artifacts};
+
+/// Ways to hang, and whether the thread is lost with the component.
+const WAYS: [(&str, bool); 3] = [
+    ("hangs", false),
+    ("hangs_asking", false),
+    ("hangs_asleep", true),
+];
+
+/// Cycles in a second of simulated time at 10 ms.
+const CYCLES: u64 = 100;
+
+/// A healthy chain beside a component that hangs, with all that can call the latter.
+fn application(way: &str, callback: &str) -> Application {
+    let faulty = Member::new("faulty", way)
+        .property("callback", callback)
+        .property("at_cycle", "1");
+    Application::new()
+        .with(&Member::new("counter", "counter"))
+        .with(&Member::new("recorder", "recorder"))
+        .with(&faulty)
+        .with(&Member::new("sink", "recorder"))
+        .with(&Member::new("herald", "herald"))
+        .with(&Member::new("asker", "asker"))
+        .connect("data", "counter.output", "recorder.input")
+        .connect("data", "faulty.output", "sink.input")
+        .connect("event", "herald.news", "faulty.heard")
+        .connect("service", "asker.arithmetic", "faulty.arithmetic")
+}
+
+/// In simulated time nothing of the others changes: the hang takes no time of that clock.
+#[test]
+fn in_simulated_time() {
+    for (way, thread_lost) in WAYS {
+        for callback in [
+            "onPeriodChanged",
+            "onExecute",
+            "onUpdated",
+            "onEvent",
+            "onCall",
+            "onStop",
+        ] {
+            let outcome = application(way, callback).simulate("1s").ended_well();
+            let context = format!("{way} in {callback}");
+            let expected = ("hang".to_owned(), callback.to_owned());
+            assert_eq!(outcome.faults("faulty"), [expected], "{context}");
+            let fault = outcome.events("fault", "faulty")[0];
+            assert_eq!(fault["thread_lost"], thread_lost, "{context}");
+            let message = fault["message"].as_str().expect("a text");
+            assert!(
+                message.starts_with("it did not return within 1s"),
+                "{message}"
+            );
+            let states = outcome.states("faulty");
+            assert!(states.iter().any(|state| state == "ERROR"), "{context}");
+            for healthy in ["counter", "recorder", "sink", "herald"] {
+                assert_eq!(outcome.cycles(healthy), CYCLES, "{context}: {healthy}");
+            }
+            assert_eq!(
+                outcome.states("recorder"),
+                ["READY", "ACTIVE", "INACTIVE", "DESTROYED"],
+                "{context}"
+            );
+        }
+    }
+}
+
+/// Who called a component that is broken off gets an answer and goes on.
+#[test]
+fn the_caller_is_not_charged() {
+    let outcome = application("hangs", "onCall").simulate("1s").ended_well();
+    assert_eq!(
+        outcome.logs("asker"),
+        [
+            "answer 502 INTERNAL_FAULT",
+            "answer 405 PRECONDITION_NOT_MET"
+        ]
+    );
+    assert_eq!(outcome.cycles("asker"), CYCLES);
+    assert_eq!(outcome.component("asker")["faults"], 0);
+}
+
+/// By the machine's clock, each on a thread of its own: the healthy ones go on meanwhile.
+#[test]
+fn in_real_time() {
+    let mut application = Application::new()
+        .with(&Member::new("counter", "counter"))
+        .with(&Member::new("recorder", "recorder").property("verbose", "true"))
+        .connect("data", "counter.output", "recorder.input");
+    for (way, _) in WAYS {
+        application = application.with(&Member::new(way, way));
+    }
+    let outlived = |events: &str| {
+        let faults = events.match_indices("\"event\":\"fault\"");
+        let last = faults.skip(WAYS.len() - 1).last();
+        last.is_some_and(|(last, _)| events[last..].matches("got ").count() > 20)
+    };
+    let outcome = application.run_until(outlived).ended_well();
+    for (way, thread_lost) in WAYS {
+        let expected = ("hang".to_owned(), "onExecute".to_owned());
+        assert_eq!(outcome.faults(way), [expected], "{way}");
+        assert_eq!(outcome.component(way)["state"], "ERROR", "{way}");
+        assert_eq!(outcome.cycles(way), 4, "{way}");
+        let fault = outcome.events("fault", way)[0];
+        assert_eq!(fault["thread_lost"], thread_lost, "{way}");
+        let message = fault["message"].as_str().expect("a text");
+        assert!(
+            message.starts_with("it did not return within 30ms"),
+            "{message}"
+        );
+    }
+    assert_eq!(outcome.component("counter")["faults"], 0);
+    let logs = outcome.logs("recorder");
+    let last = logs.last().map(String::as_str).unwrap_or_default();
+    assert!(last.ends_with("gaps 0"), "{last}");
+    assert!(!outcome.raw_events().contains("left behind"));
+}
+
+/// What blocks every signal by itself cannot be broken off: the container goes on without it, and
+/// ends without it.
+#[test]
+fn although_it_hears_no_signal() {
+    for callback in ["onExecute", "onStop"] {
+        let deaf = Member::new("deaf", "hangs_deaf")
+            .property("callback", callback)
+            .property("at_cycle", "1");
+        let outcome = Application::new()
+            .with(&Member::new("diary", "diary").period(200))
+            .with(&deaf)
+            .run_until(|events| events.contains("onExecute"))
+            .ended_well();
+        assert!(outcome.raw_events().contains("left behind"), "{callback}");
+        assert_eq!(
+            outcome.states("diary"),
+            ["READY", "ACTIVE", "INACTIVE", "DESTROYED"],
+            "{callback}: the others stop in order"
+        );
+    }
+}
+
+/// While it is brought up: with a limit of its own, so that nobody waits for the default.
+#[test]
+fn while_it_is_brought_up() {
+    for (callback, limit) in [("onInitialize", "50ms"), ("onStart", "50ms")] {
+        let faulty = Member::new("faulty", "hangs")
+            .property("callback", callback)
+            .property("at_cycle", "1");
+        let application = Application::new().with(&faulty);
+        let loaded = load_application(&application.profile(), &LoadOptions::default());
+        let specification = loaded.specification.expect("a sound application");
+        let (events, writer) = EventLog::open(None, false, None).expect("an event log");
+        let environment = Arc::new(Environment {
+            clock: Clock::simulated(),
+            events,
+            devices: Devices::default(),
+        });
+        let options = LibraryOptions {
+            search: LibrarySearch::new(vec![artifacts().to_owned()]),
+            probe: None,
+        };
+        let assembly = assemble(&specification, &options, &environment);
+        let components = assembly
+            .unwrap_or_else(|problems| panic!("{problems:?}"))
+            .components;
+        let component = Arc::clone(&components[0]);
+        let message = Arc::default();
+        let lane = Lane::new(
+            "up",
+            Box::new(BringUp {
+                component,
+                message: Arc::clone(&message),
+            }),
+        );
+        let crew = Crew::new().expect("a crew");
+        crew.start(&lane, || {}).expect("a thread");
+        assert!(lane.wait(Duration::from_secs(60)), "{callback}");
+        crew.dismiss();
+        environment.events.finish();
+        writer.close().expect("no file to fail");
+        let expected = format!("hang in {callback}: it did not return within {limit}");
+        assert_eq!(*message.lock().expect("not poisoned"), expected);
+    }
+}
+
+/// Brings a component up and notes what it failed of.
+struct BringUp {
+    component: Arc<ComponentCell>,
+    message: Arc<Mutex<String>>,
+}
+
+impl Work for BringUp {
+    fn run(&mut self, lane: &Lane) {
+        let mut component = self
+            .component
+            .enter(lane.token(), Duration::ZERO)
+            .expect("free");
+        component.set_limits(CallLimits {
+            cycle: Duration::from_secs(60),
+            startup: Duration::from_millis(50),
+        });
+        component.construct(lane.loss()).expect("constructed");
+        for operation in [Operation::Initialize, Operation::Start] {
+            let _fails = component.operate(operation, lane.loss());
+        }
+        assert_eq!(component.state(), LifeCycleState::Error);
+        let last = component.status().last_fault().unwrap_or_default();
+        *self.message.lock().expect("not poisoned") = last;
+    }
+
+    fn after_loss(&mut self, lost: &LostThread) {
+        panic!("only the component is broken off: {lost:?}");
+    }
+}
