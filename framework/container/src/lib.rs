@@ -7,6 +7,7 @@
 pub mod assembly;
 pub mod clock;
 pub mod component;
+pub mod control;
 pub mod device;
 pub mod event_log;
 pub mod executor;
