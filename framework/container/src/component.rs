@@ -14,7 +14,7 @@ use system_model::life_cycle::{LifeCycleState, Operation, Transition, transition
 
 use crate::event_log::Event;
 use crate::guard::loss::{Loss, LostThread};
-use crate::guard::{Callback, Ending, Exit, Guarded, Misbehaviour, ServiceCall, Trap};
+use crate::guard::{Callback, Ending, Exit, Guarded, Misbehaviour, Scene, ServiceCall, Trap};
 use crate::status::ComponentStatus;
 use limits::Limits;
 
@@ -33,6 +33,8 @@ pub struct Component {
     status: Arc<ComponentStatus>,
     period: Duration,
     limits: Limits,
+    /// Where it was when it was taken off.
+    scene: Option<Scene>,
 }
 
 /// Why an operation did not bring the component where it should be.
@@ -60,7 +62,14 @@ impl Component {
             status,
             period,
             limits: CallLimits::default().into(),
+            scene: None,
         }
+    }
+
+    /// Where in its code the component was when a trap or the watchdog ended it, once: the
+    /// evidence beside the fault. Its backtrace is for a thread that has time.
+    pub fn take_scene(&mut self) -> Option<Scene> {
+        self.scene.take()
     }
 
     /// Lets it misbehave when its next callback is due; it does not know.
@@ -226,6 +235,7 @@ impl Component {
     /// The thread was lost inside this component.
     pub fn lost(&mut self, thread: &LostThread) {
         self.guarded.quarantine();
+        self.scene = self.guarded.scene(&thread.trap);
         self.record(trap_fault(&thread.trap, self.services.callback(), true));
         self.enter_state(LifeCycleState::Error);
     }
@@ -280,7 +290,10 @@ impl Component {
     fn judge(&mut self, ending: Ending, callback: &'static str) -> Box<Fault> {
         let fault = match ending {
             Ending::Returned(status) => self.services.returned_fault(status, callback),
-            Ending::Trapped(trap) => trap_fault(&trap, callback, false),
+            Ending::Trapped(trap) => {
+                self.scene = self.guarded.scene(&trap);
+                trap_fault(&trap, callback, false)
+            }
             Ending::Left(Exit::Abort) => {
                 Fault::new(FaultKind::Abort, callback, "abort()".to_owned())
             }

@@ -15,7 +15,7 @@ use corosensei::Yielder;
 use corosensei::stack::Stack as _;
 
 use super::copy::guarded_copy;
-use super::stack::ComponentStack;
+use super::stack::{ComponentStack, StackMemory};
 use super::{Callback, Exit, Input, Misbehaviour, What, Yielded};
 
 /// What a component asks. Pointers are as the component gave them: anything.
@@ -188,6 +188,13 @@ impl HostSide {
 
     pub(super) fn limit(&self) -> usize {
         self.limit
+    }
+
+    pub(super) fn stack(&self) -> StackMemory {
+        StackMemory {
+            limit: self.limit,
+            base: self.base,
+        }
     }
 
     pub(super) fn context(&self) -> *mut HostContext {
