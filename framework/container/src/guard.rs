@@ -20,6 +20,7 @@ mod interpose;
 pub mod loss;
 mod registers;
 mod scene;
+mod signals;
 mod stack;
 mod stray;
 mod table;

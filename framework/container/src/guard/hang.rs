@@ -21,7 +21,7 @@ static OWN_CODE: OnceLock<CodeRange> = OnceLock::new();
 
 /// Real-time signals are for applications; the C library keeps the first two, and a number in the
 /// middle is less likely to be another library's.
-fn signal() -> libc::c_int {
+pub(super) fn signal() -> libc::c_int {
     libc::SIGRTMIN() + 5
 }
 

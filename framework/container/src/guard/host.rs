@@ -154,6 +154,8 @@ pub(super) struct HostSide {
     answering: AtomicBool,
     /// What happens at the next callback.
     injection: Cell<Option<Misbehaviour>>,
+    /// Whether the component has tried to change signals that the guard needs.
+    meddled: Cell<bool>,
     exit: Cell<Exit>,
     base: usize,
     limit: usize,
@@ -180,6 +182,7 @@ impl HostSide {
             answer: Cell::new(answer_nothing),
             answering: AtomicBool::new(false),
             injection: Cell::new(None),
+            meddled: Cell::new(false),
             exit: Cell::new(Exit::Abort),
             base: 0,
             limit: 0,
@@ -215,7 +218,7 @@ impl HostSide {
 
     /// Whether the caller runs on this component's own stack: threads of the component's own may
     /// hold the context, but may not suspend a coroutine that they are not inside of.
-    fn called_on_own_stack(&self) -> bool {
+    pub(super) fn called_on_own_stack(&self) -> bool {
         let here = 0u8;
         let address = (&raw const here).addr();
         (self.limit..self.base).contains(&address)
@@ -227,6 +230,11 @@ impl HostSide {
 
     pub(super) fn set_callback(&self, callback: Callback) {
         self.callback.set(callback);
+    }
+
+    /// Whether it has been called before.
+    pub(super) fn has_meddled(&self) -> bool {
+        self.meddled.replace(true)
     }
 
     pub(super) fn set_injection(&self, misbehaviour: Option<Misbehaviour>) {

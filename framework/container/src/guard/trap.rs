@@ -27,7 +27,7 @@ use super::stray;
 const HANDLER_STACK_BYTES: usize = 64 * 1024;
 
 /// The synchronous signals, and abort.
-const SIGNALS: [libc::c_int; 6] = [
+pub(super) const SIGNALS: [libc::c_int; 6] = [
     libc::SIGSEGV,
     libc::SIGBUS,
     libc::SIGFPE,
