@@ -21,7 +21,7 @@ use system_model::specification::{PortDirection, PortKind};
 
 use crate::event_log::Event;
 use crate::guard::loss::{Loss, LostThread};
-use crate::guard::{Callback, Ending, Guarded, ServiceCall};
+use crate::guard::{Callback, Ending, Guarded, Scene, ServiceCall};
 use crate::status::ComponentStatus;
 use limits::Limits;
 
@@ -56,6 +56,8 @@ pub struct Component {
     limits: Limits,
     /// What the limits are by the container's clock, which need not be the machine's.
     nominal: CallLimits,
+    /// Where it was when it was taken off.
+    scene: Option<Scene>,
 }
 
 /// Why an operation did not bring the component where it should be.
@@ -88,6 +90,7 @@ impl Component {
             variant: 0,
             limits: CallLimits::default().into(),
             nominal: CallLimits::default(),
+            scene: None,
         }
     }
 
@@ -291,6 +294,7 @@ impl Component {
     /// what the fault manager itself had asked for, is for the caller to say.
     pub fn lost(&mut self, thread: &LostThread) -> Fault {
         self.guarded.quarantine();
+        self.scene = self.guarded.scene(&thread.trap);
         let fault = judgement::trap_fault(&thread.trap, self.services.callback(), true);
         self.record(&fault);
         self.enter_state(LifeCycleState::Error);

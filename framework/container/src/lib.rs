@@ -5,6 +5,7 @@
 //! a running system; what happens in it becomes events.
 
 pub mod assembly;
+pub mod backtrace;
 pub mod clock;
 pub mod component;
 pub mod control;

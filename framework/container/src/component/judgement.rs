@@ -24,7 +24,10 @@ impl Component {
     ) -> Box<Fault> {
         let mut fault = match ending {
             Ending::Returned(status) => self.services.returned_fault(status, callback),
-            Ending::Trapped(trap) => trap_fault(&trap, callback, false),
+            Ending::Trapped(trap) => {
+                self.scene = self.guarded.scene(&trap);
+                trap_fault(&trap, callback, false)
+            }
             Ending::Left(Exit::Abort) => {
                 Fault::new(FaultKind::Abort, callback, "abort()".to_owned())
             }
