@@ -33,7 +33,7 @@ pub use port_end::{
     BoundMethod, Calls, DataInput, DataOutput, EventOutput, Inbox, PortEnd, Provider,
 };
 pub use services::{Detectors, Environment, Services};
-pub use tap::{InputTap, OutputTap, SafeDatum, Watch};
+pub use tap::{InputTap, OutputTap, SafeDatum, VotedInput, VotingSource, Watch};
 
 /// The event port by which a component may hear of an emergency stop.
 const EMERGENCY_STOP: &str = "emergency_stop";

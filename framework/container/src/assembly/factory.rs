@@ -132,6 +132,7 @@ fn unconnected(port: &PortDescription) -> PortEnd {
         (PortKind::Event, PortDirection::Output) => PortEnd::EventOutput(EventOutput {
             size,
             connections: Vec::new(),
+            fault: None,
         }),
         (PortKind::Service, PortDirection::Output) => PortEnd::Required(Calls {
             methods: Vec::new(),

@@ -2,6 +2,7 @@
 
 mod duration;
 mod live;
+mod models;
 mod report;
 mod words;
 
@@ -124,6 +125,7 @@ pub fn run(arguments: &RunArguments) -> ExitCode {
 fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
     let (specification, rules) = load(arguments)?;
     let injections = load_injections_of(arguments, &specification)?;
+    let models = models::load(&rules, &specification, &arguments.search_path)?;
     let simulation = simulate(&specification, arguments.seed)?;
     let stop_asked = watch_signals()?;
     let (echo, lines) = bounded(ECHO_QUEUE);
@@ -138,7 +140,7 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         echo: Some(echo),
         libraries: libraries(arguments),
         rules,
-        models: Vec::new(),
+        models,
         injections,
     };
     let started = System::start(&specification, simulation, options);

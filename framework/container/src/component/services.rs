@@ -77,6 +77,8 @@ pub struct Services {
     critical: Option<(usize, usize)>,
     /// None without a fault manager.
     detectors: Option<Detectors>,
+    /// Faults that it may report by name, by rule.
+    named_faults: Vec<(String, DetectorId)>,
     /// Inputs of which a datum is in work in this cycle, by bits.
     in_work: u64,
     /// An output of this cycle failed its check.
@@ -119,6 +121,7 @@ impl Services {
             bad_pointer: None,
             critical: None,
             detectors: None,
+            named_faults: Vec::new(),
             in_work: 0,
             contaminated: false,
         }
@@ -235,12 +238,17 @@ impl Services {
             return Status::BAD_INPUT_PARAMETER;
         }
         let mut answer = Status::SUCCESS;
+        let fault = output.fault;
         for (sender, wake) in &mut output.connections {
             match sender.send(self.cycle_ns, self.incarnation, |bytes| data.copy_to(bytes)) {
                 Sent::Queued => wake.wake(),
                 Sent::Full => answer = Status::OUT_OF_RESOURCES,
                 Sent::Unreadable => return self.bad_pointer("raise"),
             }
+        }
+        if let Some(detector) = fault {
+            let name = self.port_name(port as usize);
+            self.report_symptom(detector, format!("event '{name}'"), 0);
         }
         answer
     }

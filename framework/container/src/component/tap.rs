@@ -2,6 +2,7 @@
 //! safe value of a command port, samples for process models. A port without rules has none.
 
 mod safe_value;
+mod voter;
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -17,6 +18,7 @@ use crate::port::{Datum, Receiver};
 use crate::supervision::{Observations, SafetyGate, Sampler};
 
 pub use safe_value::SafeDatum;
+pub use voter::{Source as VotingSource, VotedInput};
 
 /// Where and when a port is used.
 #[derive(Debug, Clone, Copy)]
@@ -245,6 +247,8 @@ pub struct InputTap {
     pub maximum_age: Option<Duration>,
     /// Process models that want to know.
     pub samplers: Vec<Sampler>,
+    /// Stands in for what is connected.
+    pub voter: Option<Box<VotedInput>>,
     /// When the datum was written that was delivered last.
     delivered_ns: u64,
     /// A datum that was changed on its way, and whether it is to come once more.
@@ -267,21 +271,27 @@ impl InputTap {
             gate,
             maximum_age: None,
             samplers: Vec::new(),
+            voter: None,
             delivered_ns: 0,
             changed: None,
         }
     }
 
-    /// The next datum that the component may see; whether it is one that was sent, and its content.
+    /// The next datum that the component may see; whether it may be given to a successor, and its
+    /// content.
     pub fn receive<'tap>(
         &'tap mut self,
-        source: &'tap mut Receiver,
+        source: Option<&'tap mut Receiver>,
         at: Circumstances<'_>,
     ) -> Option<(bool, &'tap [u8])> {
-        let next = if at.injections.is_some() {
-            Self::receive_distorted(&mut self.changed, source, at)
-        } else {
-            source.receive()
+        let was_sent = self.voter.is_none();
+        let next = match (&mut self.voter, source) {
+            (Some(voter), _) => voter.receive(at),
+            (None, None) => None,
+            (None, Some(source)) if at.injections.is_some() => {
+                Self::receive_distorted(&mut self.changed, source, at)
+            }
+            (None, Some(source)) => source.receive(),
         };
         if let Some(datum) = next {
             let stamp_ns = datum.stamp_ns();
@@ -295,7 +305,7 @@ impl InputTap {
                 if let Some(safe) = &mut self.safe {
                     safe.remember(datum.bytes());
                 }
-                return Some((true, datum.bytes()));
+                return Some((was_sent, datum.bytes()));
             }
         }
         let is_stale = self.delivered_ns > 0

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use component_abi::Status;
+use fault_manager::DetectorId;
 
 use super::{Detectors, Environment, Services};
 use crate::component::port_end::{Inbox, PortEnd};
@@ -51,6 +52,11 @@ impl Services {
         self.detectors = Some(detectors);
     }
 
+    /// Faults of this name that the component reports are those of a rule.
+    pub fn name_fault(&mut self, name: String, detector: DetectorId) {
+        self.named_faults.push((name, detector));
+    }
+
     /// The ports, as the library describes them.
     pub fn interface(&self) -> &Arc<[PortDescription]> {
         &self.interface
@@ -78,6 +84,7 @@ impl Services {
     /// What belongs to the name rather than to the instance.
     pub(in crate::component) fn take_over(&mut self, predecessor: &mut Self) {
         self.detectors = predecessor.detectors;
+        self.named_faults = std::mem::take(&mut predecessor.named_faults);
         self.cycle_ns = predecessor.cycle_ns;
     }
 

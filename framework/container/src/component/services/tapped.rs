@@ -38,10 +38,10 @@ impl Services {
         let Some(PortEnd::DataInput(input)) = self.ports.get_mut(port as usize) else {
             return Status::BAD_INPUT_PARAMETER;
         };
-        let (Some(tap), Some(source)) = (&mut input.tap, &mut input.source) else {
+        let Some(tap) = &mut input.tap else {
             return Status::NOTHING;
         };
-        match tap.receive(source, at) {
+        match tap.receive(input.source.as_mut(), at) {
             None => Status::NOTHING,
             Some((sent, bytes)) if data.copy_from(bytes) => {
                 if sent {
