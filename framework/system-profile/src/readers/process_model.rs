@@ -6,7 +6,7 @@
 //!     <a>0 1; -4 -2</a> <b>0; 4</b> <c>1 0</c> <d>0</d> <initial>0 0</initial>
 //!   </state_space>
 //!   <noise><process>0 0.1</process><measurement>0.01</measurement></noise>
-//!   <input_delay_ms>20</input_delay_ms>
+//!   <input_delay_ms>20</input_delay_ms> <input_jitter_ms>5</input_jitter_ms>
 //!   <inputs>
 //!     <input name="speed">
 //!       <case when="direction" equals="2"><term field="speed" scale="-1"/></case>
@@ -17,8 +17,8 @@
 //! ```
 //!
 //! Rows of a matrix are separated by semicolons, numbers by blanks or commas. A covariance may be
-//! given by its diagonal. `d`, `initial` and `input_delay_ms` may be left out, they are 0 then;
-//! `inputs` too, if each input is a number that a rule names. The first case of an input whose field
+//! given by its diagonal. `d`, `initial`, `input_delay_ms` and `input_jitter_ms` may be left out, they are
+//! 0 then; `inputs` too, if each input is a number that a rule names. The first case of an input whose field
 //! `when` equals a number counts; its terms are added up, and `offset` to them.
 
 mod inputs;
@@ -83,8 +83,11 @@ pub(super) fn read(root: &Node<'_>) -> Option<ProcessModel> {
         space
     });
     let noise = root.required_child("noise");
-    let delay = root.value("input_delay_ms");
-    let delay = delay.map(|value| milliseconds(&value, &INPUT_DELAY_MS));
+    let time = |name| match root.value(name) {
+        Some(value) => milliseconds(&value, &INPUT_DELAY_MS),
+        None => Some(Duration::ZERO),
+    };
+    let (delay, jitter) = (time("input_delay_ms"), time("input_jitter_ms"));
     let inputs = root.child("inputs");
     let count = state_space.as_ref().map(|space| space.b.columns);
     let inputs = inputs.map(|node| inputs::read(&node, count));
@@ -106,7 +109,8 @@ pub(super) fn read(root: &Node<'_>) -> Option<ProcessModel> {
         state_space: state_space?,
         process_noise: process_noise?,
         measurement_noise: measurement_noise?,
-        input_delay: delay.unwrap_or(Some(Duration::ZERO))?,
+        input_delay: delay?,
+        input_jitter: jitter?,
         inputs: match inputs {
             Some(inputs) => inputs?,
             None => Vec::new(),

@@ -10,7 +10,7 @@ const GOOD: &str = r#"<process_model name="lag">
     <c>1 0</c>
   </state_space>
   <noise><process>0, 0.1</process><measurement>0.01</measurement></noise>
-  <input_delay_ms>40</input_delay_ms>
+  <input_delay_ms>40</input_delay_ms><input_jitter_ms>2.5</input_jitter_ms>
   <inputs>
     <input name="speed">
       <case when="direction" equals="2"><term field="speed" scale="-1"/></case>
@@ -34,6 +34,7 @@ fn a_model_is_read_with_its_defaults() {
     assert_eq!(model.state_space.initial, [0.0, 0.0]);
     assert_eq!(model.process_noise.elements, [0.0, 0.0, 0.0, 0.1]);
     assert_eq!(model.input_delay, Duration::from_millis(40));
+    assert_eq!(model.input_jitter, Duration::from_micros(2500));
     let cases = &model.inputs[0].cases;
     assert_eq!(cases[0].terms[0].scale, -1.0);
     assert_eq!(
