@@ -1,7 +1,16 @@
 //! Exports the functions that the guard interposes, so that component libraries bind to them.
 
 fn main() {
-    for symbol in ["abort", "exit", "quick_exit", "_exit"] {
+    for symbol in [
+        "abort",
+        "exit",
+        "quick_exit",
+        "_exit",
+        "sigaction",
+        "signal",
+        "sigprocmask",
+        "pthread_sigmask",
+    ] {
         println!("cargo::rustc-link-arg=-Wl,--export-dynamic-symbol={symbol}");
     }
     println!("cargo::rerun-if-changed=build.rs");

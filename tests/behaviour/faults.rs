@@ -3,7 +3,7 @@
 use tests::{Application, Member, Outcome};
 
 /// Every misbehaviour with the kind of fault that it is.
-const MISBEHAVIOURS: [(&str, &str); 12] = [
+const MISBEHAVIOURS: [(&str, &str); 13] = [
     ("panics", "panic"),
     ("returns_error", "error_return"),
     ("writes_null", "segfault"),
@@ -16,6 +16,7 @@ const MISBEHAVIOURS: [(&str, &str); 12] = [
     ("bad_pointer", "bad_pointer"),
     ("crashes_in_libc", "segfault"),
     ("double_panics", "abort"),
+    ("replaces_handlers", "segfault"),
 ];
 
 /// Cycles in a second of simulated time at 10 ms.
@@ -225,6 +226,23 @@ fn a_panic_tells_its_text_and_place() {
     );
     assert_eq!(fault["t_ns"], 0);
     assert_eq!(fault["incarnation"], 1);
+}
+
+/// What it asked of the signals that the guard needs is refused and on record, once.
+#[test]
+fn who_meddles_with_signals_is_named() {
+    for (way, function) in [
+        ("replaces_handlers", "sigaction"),
+        ("blocks_signals", "pthread_sigmask"),
+    ] {
+        let outcome = application(way, "onExecute", 1)
+            .simulate("100ms")
+            .ended_well();
+        let refusal = format!(
+            "{function}: signals that the guard needs keep their handlers and stay unblocked"
+        );
+        assert_eq!(outcome.logs("faulty"), [refusal], "{way}");
+    }
 }
 
 /// A thread that the component made itself fails, in the component's code or below it in the C

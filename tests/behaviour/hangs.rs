@@ -16,10 +16,11 @@ use system_profile::{LoadOptions, load_application};
 use tests::{Application, Member, artifacts};
 
 /// Ways to hang, and whether the thread is lost with the component.
-const WAYS: [(&str, bool); 3] = [
+const WAYS: [(&str, bool); 4] = [
     ("hangs", false),
     ("hangs_asking", false),
     ("hangs_asleep", true),
+    ("blocks_signals", false),
 ];
 
 /// Cycles in a second of simulated time at 10 ms.

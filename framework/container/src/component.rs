@@ -2,6 +2,7 @@
 
 mod cell;
 mod checkpoint;
+mod injected;
 mod judgement;
 mod limits;
 mod port_end;
@@ -20,7 +21,7 @@ use system_model::specification::{PortDirection, PortKind};
 
 use crate::event_log::Event;
 use crate::guard::loss::{Loss, LostThread};
-use crate::guard::{Callback, Ending, Guarded, Misbehaviour, ServiceCall};
+use crate::guard::{Callback, Ending, Guarded, Scene, ServiceCall};
 use crate::status::ComponentStatus;
 use limits::Limits;
 
@@ -32,7 +33,7 @@ pub use port_end::{
     BoundMethod, Calls, DataInput, DataOutput, EventOutput, Inbox, PortEnd, Provider,
 };
 pub use services::{Detectors, Environment, Services};
-pub use tap::{InputTap, OutputTap, SafeDatum, Watch};
+pub use tap::{InputTap, OutputTap, SafeDatum, VotedInput, VotingSource, Watch};
 
 /// The event port by which a component may hear of an emergency stop.
 const EMERGENCY_STOP: &str = "emergency_stop";
@@ -53,6 +54,10 @@ pub struct Component {
     /// Which of the component's libraries it is of: its own (0) or that of a secondary (from 1).
     variant: usize,
     limits: Limits,
+    /// What the limits are by the container's clock, which need not be the machine's.
+    nominal: CallLimits,
+    /// Where it was when it was taken off.
+    scene: Option<Scene>,
 }
 
 /// Why an operation did not bring the component where it should be.
@@ -84,17 +89,17 @@ impl Component {
             constructed: false,
             variant: 0,
             limits: CallLimits::default().into(),
+            nominal: CallLimits::default(),
+            scene: None,
         }
     }
 
-    /// Lets it misbehave when its next callback is due; it does not know.
-    pub fn inject(&mut self, misbehaviour: Option<Misbehaviour>) {
-        self.guarded.inject(misbehaviour);
-    }
-
-    /// Sets how long its callbacks may take; before that the default holds.
+    /// Sets how long its callbacks may take by the container's clock; before that the default
+    /// holds.
     pub fn set_limits(&mut self, limits: CallLimits) {
-        self.limits = limits.into();
+        let clock = &self.services.environment().clock;
+        self.limits = limits.by_clock(clock).into();
+        self.nominal = limits;
     }
 
     /// Instance name.
@@ -289,6 +294,7 @@ impl Component {
     /// what the fault manager itself had asked for, is for the caller to say.
     pub fn lost(&mut self, thread: &LostThread) -> Fault {
         self.guarded.quarantine();
+        self.scene = self.guarded.scene(&thread.trap);
         let fault = judgement::trap_fault(&thread.trap, self.services.callback(), true);
         self.record(&fault);
         self.enter_state(LifeCycleState::Error);
@@ -372,13 +378,16 @@ impl Component {
         loss: &Loss,
     ) -> Result<(), Box<Fault>> {
         self.services.begin(name);
-        let limit = self.limits.of(callback);
+        let mut limit = self.limits.of(callback);
+        if self.services.environment().injections.is_armed() {
+            limit = self.inject(callback, name).unwrap_or(limit);
+        }
         let ending = self.guarded.call(callback, limit, loss, &mut self.services);
         match ending {
             Ending::Returned(status) if status.is_success() && !self.services.has_bad_pointer() => {
                 Ok(())
             }
-            other => Err(self.judge(other, name)),
+            other => Err(self.judge(other, callback, name)),
         }
     }
 

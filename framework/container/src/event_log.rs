@@ -63,6 +63,16 @@ pub enum Event {
         /// Whether its thread was lost with it.
         thread_lost: bool,
     },
+    /// A fault was made on purpose, or is over.
+    Injection {
+        /// Its KIND.
+        fault: &'static str,
+        /// Instance name; none for a fault of the world.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        component: Option<String>,
+        /// `begins` or `ends`.
+        change: &'static str,
+    },
     /// A datum or message with which two incarnations died in work is not given to a third.
     DatumSetAside {
         /// Instance name of the receiver.

@@ -19,6 +19,8 @@ mod injection;
 mod interpose;
 pub mod loss;
 mod registers;
+mod scene;
+mod signals;
 mod stack;
 mod stray;
 mod table;
@@ -33,11 +35,13 @@ use std::ptr;
 use component_abi::{Callbacks, Instance, Status};
 use corosensei::{Coroutine, CoroutineResult, Yielder};
 
-pub use code::CodeRange;
+pub use code::{CodeRange, LoadedObject};
 pub use hang::interrupt;
 pub use host::{ForeignBytes, ForeignBytesMut, ForeignText, HostServices, Request};
 pub use injection::Misbehaviour;
 pub use interpose::Exit;
+pub use registers::Registers;
+pub use scene::Scene;
 pub use trap::Trap;
 pub use watch::CallLimit;
 
@@ -293,6 +297,11 @@ impl Guarded {
     /// that back. It happens once.
     pub fn inject(&mut self, misbehaviour: Option<Misbehaviour>) {
         self.side.set_injection(misbehaviour);
+    }
+
+    /// Where this instance was when `trap` hit it; `None` while it can still be called.
+    pub fn scene(&self, trap: &Trap) -> Option<Scene> {
+        (!self.is_alive()).then(|| Scene::new(self.frame.code, self.side.stack(), trap))
     }
 
     /// Never call this instance again; what it holds stays as it is. Also for an instance whose

@@ -2,9 +2,11 @@
 //! port. Pure: time, cycles and data come in; nothing here touches a component.
 
 mod distortion;
+mod running;
 mod schedule;
 
 pub use distortion::{DistortionError, Passage, PortDistortion};
+pub use running::{Changed, InjectionError, Injections};
 pub use schedule::{Change, Schedule, TooManyInjections};
 
 use rand_pcg::Pcg64;

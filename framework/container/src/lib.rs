@@ -5,8 +5,10 @@
 //! a running system; what happens in it becomes events.
 
 pub mod assembly;
+pub mod backtrace;
 pub mod clock;
 pub mod component;
+pub mod control;
 pub mod device;
 pub mod event_log;
 pub mod executor;

@@ -9,6 +9,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use commands::check::{self, CheckArguments};
+use commands::fault::{self, FaultArguments};
 use commands::run::{self, RunArguments};
 
 /// Fault tolerance for component-based robots, declared in XML.
@@ -25,6 +26,8 @@ enum Command {
     Check(CheckArguments),
     /// Run an application.
     Run(RunArguments),
+    /// List, show, clear and inject faults of a running application.
+    Fault(FaultArguments),
     /// Load a library and say by the exit code whether that works.
     #[command(hide = true)]
     ProbeLibrary {
@@ -37,6 +40,7 @@ fn main() -> ExitCode {
     match Arguments::parse().command {
         Command::Check(arguments) => check::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Fault(arguments) => fault::run(&arguments),
         Command::ProbeLibrary { path } => container::library::probe_main(&path),
     }
 }

@@ -2,6 +2,7 @@
 //! simulated time.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use system_model::specification::ExecutionKind;
@@ -22,6 +23,23 @@ const LONGEST_SLEEP: Duration = Duration::from_millis(500);
 /// In simulated time a cycle of an executor without a period takes this long; without it two
 /// components that wake each other would stop the clock.
 const SIMULATED_CYCLE_NS: u64 = 1_000;
+
+/// How long a component keeps its executor busy in simulated time, where callbacks themselves take
+/// none: an injected delay, or a hang until it was broken off.
+#[derive(Debug, Default)]
+pub struct BusyTime(AtomicU64);
+
+impl BusyTime {
+    /// The step that is under way takes so much longer.
+    pub fn add(&self, time: Duration) {
+        self.0.fetch_add(nanoseconds(time), Ordering::Relaxed);
+    }
+
+    /// How much longer the steps since the last time took, in nanoseconds.
+    fn take_ns(&self) -> u64 {
+        self.0.swap(0, Ordering::Relaxed)
+    }
+}
 
 /// An executor on a thread of its own.
 pub struct RealTime {
@@ -206,13 +224,30 @@ impl Simulated {
         while self.executors[index].step(now_ns, lane) {
             self.serve(lane);
         }
-        let executor = &self.executors[index];
-        self.due_ns[index] = if executor.kind.has_period() {
-            self.due_ns[index] + nanoseconds(executor.period)
-        } else {
-            now_ns + SIMULATED_CYCLE_NS
-        };
         self.running = None;
+        self.finish_cycle(index, now_ns, lane);
+    }
+
+    /// Sets the next release, by the same rule as in real time: a cycle that took longer than its
+    /// period is reported, and the next one is due at once.
+    fn finish_cycle(&mut self, index: usize, now_ns: u64, lane: &Lane) {
+        let executor = &self.executors[index];
+        let end_ns = now_ns + self.environment.busy.take_ns();
+        if !executor.kind.has_period() {
+            self.due_ns[index] = end_ns + SIMULATED_CYCLE_NS;
+            return;
+        }
+        let next_ns = self.due_ns[index] + nanoseconds(executor.period);
+        self.due_ns[index] = next_ns.max(end_ns);
+        if end_ns > next_ns {
+            executor.overran(lane);
+            let overrun = Event::Overrun {
+                executor: executor.name.clone(),
+                cycle: executor.cycles,
+                late_ns: end_ns - next_ns,
+            };
+            self.environment.events.record(now_ns, overrun);
+        }
     }
 
     /// Lets the fault manager see what happened, and does at once what it asks.

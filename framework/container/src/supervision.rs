@@ -18,4 +18,5 @@ pub use observations::Observations;
 pub use orders::{Order, Orders, Task};
 pub use standby::Standbys;
 pub use supervisor::Supervisor;
+pub(crate) use supervisor::nanoseconds;
 pub use threads::ManagerThreads;

@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 
 use crossbeam::channel::Sender;
 use robot_simulation::Simulation;
+use system_model::injection::Injection;
 use system_model::process_model::ProcessModel;
 use system_model::rules::FaultRules;
 use system_model::specification::ApplicationSpecification;
@@ -21,7 +22,9 @@ use crate::clock::Clock;
 use crate::component::{ComponentCell, Environment};
 use crate::device::Devices;
 use crate::event_log::{Event, EventLog, EventWriter};
+use crate::injection::Injections;
 use crate::lane::{Crew, Lane, remaining};
+use crate::schedule::BusyTime;
 use crate::status::ComponentStatus;
 use crate::summary::{ApplicationSummary, ComponentSummary, Summary, application_state};
 use crate::supervision::{ManagerThreads, Observations, Supervisor};
@@ -30,7 +33,7 @@ use crate::world::World;
 pub use agenda::Failure;
 use agenda::LeftBehind;
 use real_time::WorldThread;
-use supervise::supervise;
+use supervise::{inject, supervise};
 
 /// Loading devices, models and maps takes time; what the watchdog cannot break off by then hangs.
 /// Half as long again as one callback of bringing up may take, so that the watchdog is first.
@@ -77,6 +80,8 @@ pub struct RunOptions {
     pub rules: FaultRules,
     /// The process models that the rules name, by the name that they use.
     pub models: Vec<(String, ProcessModel)>,
+    /// Faults that are made on purpose.
+    pub injections: Vec<Injection>,
 }
 
 /// Why an application did not start. Nothing of it runs.
@@ -161,6 +166,9 @@ impl System {
             events,
             devices: Devices::new(world.clone()),
             observations: Observations::default(),
+            injections: Injections::default(),
+            world: world.clone(),
+            busy: BusyTime::default(),
         });
         let assembly = assemble(
             specification,
@@ -169,6 +177,9 @@ impl System {
             &environment,
         )
         .map_err(StartError::Assembly)?;
+        let names = specification.components.iter().map(|it| it.name.clone());
+        environment.injections.prepare(names, options.seed);
+        inject(&options.injections, &assembly, &environment).map_err(StartError::Assembly)?;
         let (supervisor, wanted) = supervise(
             specification,
             &options.rules,

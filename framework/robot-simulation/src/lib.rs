@@ -10,6 +10,7 @@
 mod arena;
 mod body_motion;
 mod camera;
+mod commanded_drive;
 mod drive;
 mod drive_record;
 mod error;
@@ -26,6 +27,7 @@ mod simulation;
 mod sonar;
 
 pub use arena::{Arena, Solid, SolidKind};
+pub use commanded_drive::{CommandedDrive, CyclePhases, EncoderCounts, WheelCommand};
 pub use drive_record::RobotSummary;
 pub use error::SimulationError;
 pub use fault::{Fault, Side};

@@ -1,6 +1,7 @@
 //! What can go wrong with a component, as the container saw it.
 
 use std::fmt;
+use std::time::Duration;
 
 /// A kind of fault; its name is part of the event file's format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -102,6 +103,8 @@ pub struct Fault {
     pub thread_lost: bool,
     /// What the callback returned, for [`FaultKind::ErrorReturn`]; 0 else.
     pub return_code: u32,
+    /// How long it had lasted when it was seen: the limit of a callback that hung; zero else.
+    pub lasted: Duration,
     /// The signal and the address it was about, for a trap.
     pub signal: Option<SignalEvidence>,
 }
@@ -116,6 +119,7 @@ impl Fault {
             place: None,
             thread_lost: false,
             return_code: 0,
+            lasted: Duration::ZERO,
             signal: None,
         }
     }

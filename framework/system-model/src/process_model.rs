@@ -16,6 +16,9 @@ pub struct ProcessModel {
     pub measurement_noise: Matrix,
     /// Between an input as it is observed and its effect; whole periods, else rounded.
     pub input_delay: Duration,
+    /// An input may act so much earlier or later: periods of executors and lines are not in step. A
+    /// residual is excused as far as its output moves in this time.
+    pub input_jitter: Duration,
     /// How the inputs are got from the data of a port, one for each input; empty where each input
     /// is a number of its own port.
     pub inputs: Vec<ModelInput>,

@@ -28,7 +28,9 @@ pub use check::{FileReport, check_file};
 pub use document::{Document, MAX_FILE_SIZE};
 pub use node::Node;
 pub use problem::{MAX_PROBLEMS_PER_FILE, Problem, ProblemLog, Severity};
-pub use readers::{PROFILE_ROOTS, WorldOutcome, load_world, read_profile};
+pub use readers::{
+    PROFILE_ROOTS, ProcessModelOutcome, WorldOutcome, load_process_model, load_world, read_profile,
+};
 pub use reading::reading;
 pub use resolve::{
     InjectionsOutcome, LoadOptions, LoadOutcome, RulesOutcome, load_application, load_injections,

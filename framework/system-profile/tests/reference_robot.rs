@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use system_profile::{LoadOptions, load_application, load_world};
+use system_profile::{LoadOptions, check_file, load_application, load_world};
 
 fn profiles() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../profiles")
@@ -42,4 +42,48 @@ fn a_world_is_no_application() {
         outcome.problems[0].message,
         "<world_profile> is no application"
     );
+}
+
+/// All XML files of a folder and of those in it.
+fn files_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    let files = paths.flat_map(|path| match path.is_dir() {
+        true => files_in(&path),
+        false => vec![path],
+    });
+    files
+        .filter(|path| path.extension().is_some_and(|ending| ending == "xml"))
+        .collect()
+}
+
+#[test]
+fn no_shipped_file_has_a_problem_of_any_kind() {
+    let files = [
+        files_in(&profiles()),
+        files_in(&profiles().join("../rules")),
+    ]
+    .concat();
+    assert!(files.len() > 30, "{files:#?}");
+    for file in files {
+        for report in check_file(&file, &LoadOptions::default()) {
+            assert!(report.problems.is_empty(), "{:#?}", report.problems);
+        }
+    }
+}
+
+#[test]
+fn every_scenario_has_rules_and_injections() {
+    let scenarios = profiles().join("../rules/scenarios");
+    let read_me = std::fs::read_to_string(scenarios.join("README.md")).expect("a README");
+    for entry in std::fs::read_dir(scenarios).expect("a folder") {
+        let folder = entry.expect("an entry").path();
+        if folder.is_dir() {
+            for file in ["rules.xml", "injections.xml"] {
+                assert!(folder.join(file).is_file(), "{}", folder.display());
+            }
+            let name = folder.file_name().expect("a name").to_string_lossy();
+            assert!(read_me.contains(&format!("`{name}`")), "{name}");
+        }
+    }
 }

@@ -13,8 +13,10 @@ use container::device::Devices;
 use container::event_log::EventLog;
 use container::executor::{Executor, Member};
 use container::guard::{CodeRange, Guarded};
+use container::injection::Injections;
 use container::lane::{Crew, Lane, Work};
 use container::port::connection;
+use container::schedule::BusyTime;
 use container::status::ComponentStatus;
 use container::supervision::Observations;
 use container::wake::Wake;
@@ -106,6 +108,9 @@ fn time_cycles(length: usize, count: u64) -> Duration {
         events,
         devices: Devices::default(),
         observations: Observations::default(),
+        injections: Injections::default(),
+        world: None,
+        busy: BusyTime::default(),
     });
     let mut executor = Executor::new(
         "chain".to_owned(),

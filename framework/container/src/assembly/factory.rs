@@ -3,9 +3,9 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
+use system_model::injection::ContainerFailure;
 use system_model::rules::{ComponentRules, Preload};
 use system_model::specification::{ComponentSpecification, ExecutionKind, PortDirection, PortKind};
 
@@ -25,8 +25,6 @@ pub struct Factory {
     /// The component itself, then its secondaries in order.
     variants: Vec<Variant>,
     rules: ComponentRules,
-    /// So many loads from now fail (fault injection).
-    missing: AtomicU32,
 }
 
 /// One of the libraries that can play the component's part.
@@ -52,18 +50,12 @@ impl Factory {
             environment,
             number: u32::try_from(number).unwrap_or(u32::MAX),
             variants,
-            missing: AtomicU32::new(0),
         }
     }
 
     /// The component itself (0) and its secondaries (from 1).
     pub fn variants(&self) -> &[Variant] {
         &self.variants
-    }
-
-    /// The next load finds no library (fault injection).
-    pub fn lose_library(&self) {
-        self.missing.fetch_add(1, Ordering::Relaxed);
     }
 
     /// Makes an instance from a fresh copy of the library, with nothing connected and nothing run.
@@ -74,12 +66,8 @@ impl Factory {
         let Some(chosen) = self.variants.get(variant) else {
             return Err("there is no such secondary".to_owned());
         };
-        let lost = self
-            .missing
-            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
-                left.checked_sub(1)
-            });
-        if lost.is_ok() {
+        let injections = &self.environment.injections;
+        if injections.fails(self.number as usize, ContainerFailure::LibraryMissing) {
             return Err(format!(
                 "library {} is missing (injected)",
                 chosen.path.display()
@@ -119,7 +107,7 @@ impl Factory {
         };
         let mut component = Component::new(guarded, services, status, period);
         let limits = CallLimits::by_rules(&self.rules, &specification.execution);
-        component.set_limits(limits.by_clock(&self.environment.clock));
+        component.set_limits(limits);
         Ok(component)
     }
 }
@@ -144,6 +132,7 @@ fn unconnected(port: &PortDescription) -> PortEnd {
         (PortKind::Event, PortDirection::Output) => PortEnd::EventOutput(EventOutput {
             size,
             connections: Vec::new(),
+            fault: None,
         }),
         (PortKind::Service, PortDirection::Output) => PortEnd::Required(Calls {
             methods: Vec::new(),

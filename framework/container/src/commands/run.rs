@@ -2,6 +2,7 @@
 
 mod duration;
 mod live;
+mod models;
 mod report;
 mod words;
 
@@ -19,9 +20,12 @@ use container::summary::Summary;
 use container::system::{ClockKind, RunOptions, StartError, System};
 use crossbeam::channel::bounded;
 use robot_simulation::Simulation;
+use system_model::injection::Injection;
 use system_model::rules::FaultRules;
 use system_model::specification::ApplicationSpecification;
-use system_profile::{LoadOptions, Problem, Severity, load_application, load_rules, load_world};
+use system_profile::{
+    LoadOptions, Problem, Severity, load_application, load_injections, load_rules, load_world,
+};
 
 use super::problems;
 use live::Watcher;
@@ -62,6 +66,9 @@ pub struct RunArguments {
     /// Fault rules: what counts as a fault and what is done about it; may be given several times
     #[arg(long, value_name = "FILE.xml")]
     rules: Vec<PathBuf>,
+    /// Faults to be made on purpose
+    #[arg(long, value_name = "FILE.xml")]
+    inject: Option<PathBuf>,
     /// How long to run, by the chosen clock: 500ms, 30s, 2min, 1h; without it until the target is
     /// reached or Ctrl-C
     #[arg(long = "for", value_name = "DURATION", value_parser = duration::parse)]
@@ -117,6 +124,8 @@ pub fn run(arguments: &RunArguments) -> ExitCode {
 
 fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
     let (specification, rules) = load(arguments)?;
+    let injections = load_injections_of(arguments, &specification)?;
+    let models = models::load(&rules, &specification, &arguments.search_path)?;
     let simulation = simulate(&specification, arguments.seed)?;
     let stop_asked = watch_signals()?;
     let (echo, lines) = bounded(ECHO_QUEUE);
@@ -131,7 +140,8 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         echo: Some(echo),
         libraries: libraries(arguments),
         rules,
-        models: Vec::new(),
+        models,
+        injections,
     };
     let started = System::start(&specification, simulation, options);
     let system = started.map_err(|error| refused(&error))?;
@@ -175,7 +185,10 @@ fn load(arguments: &RunArguments) -> Result<(ApplicationSpecification, FaultRule
         search_paths: arguments.search_path.clone(),
         dangling: Severity::Error,
     };
-    for file in std::iter::once(&arguments.application).chain(&arguments.rules) {
+    for file in std::iter::once(&arguments.application)
+        .chain(&arguments.rules)
+        .chain(&arguments.inject)
+    {
         std::fs::File::open(file).map_err(|error| Failed {
             code: exit_code::FILE,
             text: format!("{} cannot be read: {error}", file.display()),
@@ -192,6 +205,21 @@ fn load(arguments: &RunArguments) -> Result<(ApplicationSpecification, FaultRule
     show(&outcome.problems);
     show(&of_rules.problems);
     Ok((specification, rules))
+}
+
+fn load_injections_of(
+    arguments: &RunArguments,
+    specification: &ApplicationSpecification,
+) -> Result<Vec<Injection>, Failed> {
+    let Some(path) = &arguments.inject else {
+        return Ok(Vec::new());
+    };
+    let outcome = load_injections(specification, path);
+    let Some(injections) = outcome.injections else {
+        return Err(not_started(arguments, &outcome.problems));
+    };
+    show(&outcome.problems);
+    Ok(injections)
 }
 
 fn not_started(arguments: &RunArguments, found: &[Problem]) -> Failed {

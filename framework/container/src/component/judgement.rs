@@ -1,22 +1,33 @@
 //! From the way a callback ended to a fault: on record, and reported to the fault manager.
 
+use std::time::Duration;
+
 use fault_manager::{Evidence, Observation, Symptom};
 use system_model::fault::{Fault, FaultKind, SignalEvidence};
 use system_model::life_cycle::LifeCycleState;
 
 use super::Component;
 use crate::event_log::Event;
-use crate::guard::{Ending, Exit, Trap};
+use crate::guard::{Callback, Ending, Exit, Trap};
+use crate::supervision::nanoseconds;
 
 /// The first page is never mapped: an address in it is a field of a null pointer.
 const NULL_PAGE: usize = 4096;
 
 impl Component {
     #[cold]
-    pub(super) fn judge(&mut self, ending: Ending, callback: &'static str) -> Box<Fault> {
-        let fault = match ending {
+    pub(super) fn judge(
+        &mut self,
+        ending: Ending,
+        called: Callback,
+        callback: &'static str,
+    ) -> Box<Fault> {
+        let mut fault = match ending {
             Ending::Returned(status) => self.services.returned_fault(status, callback),
-            Ending::Trapped(trap) => trap_fault(&trap, callback, false),
+            Ending::Trapped(trap) => {
+                self.scene = self.guarded.scene(&trap);
+                trap_fault(&trap, callback, false)
+            }
             Ending::Left(Exit::Abort) => {
                 Fault::new(FaultKind::Abort, callback, "abort()".to_owned())
             }
@@ -29,8 +40,10 @@ impl Component {
                 "called after it had ended".to_owned(),
             ),
         };
-        if fault.kind == FaultKind::Panic {
-            self.guarded.quarantine();
+        match fault.kind {
+            FaultKind::Panic => self.guarded.quarantine(),
+            FaultKind::Hang => self.judge_hang(&mut fault, called),
+            _ => {}
         }
         self.record(&fault);
         // A component that hands out bad pointers must not be started; one that is active goes to
@@ -40,6 +53,17 @@ impl Component {
             self.enter_state(LifeCycleState::Error);
         }
         Box::new(fault)
+    }
+
+    /// In simulated time a hang has lasted for as long as the rules say.
+    fn judge_hang(&mut self, fault: &mut Fault, called: Callback) {
+        let environment = self.services.environment();
+        if environment.clock.is_simulated() {
+            let limit = self.nominal.of(called);
+            environment.busy.add(limit);
+            fault.message = hang_message(limit);
+            fault.lasted = limit;
+        }
     }
 
     pub(super) fn record(&self, fault: &Fault) {
@@ -58,6 +82,7 @@ impl Component {
             return;
         };
         let environment = self.services.environment();
+        let now = environment.clock.now();
         let symptom = Symptom {
             detector: match fault.kind {
                 FaultKind::Hang => detectors.hang,
@@ -66,13 +91,22 @@ impl Component {
             incarnation: self.services.incarnation(),
             kind: fault.kind,
             return_code: fault.return_code,
-            at: environment.clock.now(),
+            at: if environment.clock.is_simulated() {
+                now
+            } else {
+                now.saturating_sub(fault.lasted)
+            },
             runs: self.is_active(),
             evidence: exception(fault, environment.clock.is_simulated()),
         };
-        environment
-            .observations
-            .report(Observation::Symptom(Box::new(symptom)));
+        let observation = Observation::Symptom(Box::new(symptom));
+        let observations = &environment.observations;
+        if environment.clock.is_simulated() && !fault.lasted.is_zero() {
+            let seen_ns = environment.clock.now_ns() + nanoseconds(fault.lasted);
+            observations.report_at(seen_ns, observation);
+        } else {
+            observations.report(observation);
+        }
     }
 
     /// Tells the fault manager of a component that failed while the application was brought up.
@@ -123,10 +157,7 @@ pub(super) fn trap_fault(trap: &Trap, callback: &'static str, thread_lost: bool)
     };
     let signal = signal_name(trap.signal);
     let mut message = match kind {
-        FaultKind::Hang => {
-            let limit = trap.hang.unwrap_or_default();
-            format!("it did not return within {limit:?}")
-        }
+        FaultKind::Hang => hang_message(trap.hang.unwrap_or_default()),
         FaultKind::StackOverflow => "the stack's guard area was hit".to_owned(),
         FaultKind::Segfault if trap.address < NULL_PAGE => {
             format!("{signal} at address {:#x} (null pointer)", trap.address)
@@ -138,6 +169,7 @@ pub(super) fn trap_fault(trap: &Trap, callback: &'static str, thread_lost: bool)
     }
     Fault {
         thread_lost,
+        lasted: trap.hang.unwrap_or_default(),
         signal: Some(SignalEvidence {
             name: signal,
             code: trap.code,
@@ -146,6 +178,10 @@ pub(super) fn trap_fault(trap: &Trap, callback: &'static str, thread_lost: bool)
         }),
         ..Fault::new(kind, callback, message)
     }
+}
+
+fn hang_message(limit: Duration) -> String {
+    format!("it did not return within {limit:?}")
 }
 
 fn signal_name(signal: i32) -> &'static str {

@@ -46,6 +46,18 @@ impl CallLimits {
         }
     }
 
+    /// Of a callback.
+    pub(super) fn of(self, callback: Callback) -> Duration {
+        match callback {
+            Callback::Create
+            | Callback::Initialize
+            | Callback::Start
+            | Callback::Reset
+            | Callback::Recover => self.startup,
+            _ => self.cycle,
+        }
+    }
+
     /// The same for an application that runs by this clock: not below 1 s in simulated time.
     #[must_use]
     pub fn by_clock(self, clock: &Clock) -> Self {

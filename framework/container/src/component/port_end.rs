@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use fault_manager::DetectorId;
+
 use super::cell::ComponentCell;
 use super::tap::{InputTap, OutputTap};
 use crate::port::{Datum, Leftover, MOST_DEATHS, MailReceiver, MailSender, Receiver, Sender};
@@ -49,6 +51,8 @@ pub struct EventOutput {
     pub size: usize,
     /// One for each connected input, with what wakes its receiver.
     pub connections: Vec<(MailSender, Arc<Wake>)>,
+    /// By a rule each of its events is a fault.
+    pub fault: Option<DetectorId>,
 }
 
 /// Messages that arrive by one connection.

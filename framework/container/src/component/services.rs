@@ -17,9 +17,12 @@ use crate::clock::Clock;
 use crate::device::Devices;
 use crate::event_log::EventLog;
 use crate::guard::{ForeignBytes, ForeignBytesMut, ForeignText, HostServices, Request};
+use crate::injection::Injections;
 use crate::library::PortDescription;
 use crate::port::{Receiver, Sent};
+use crate::schedule::BusyTime;
 use crate::supervision::Observations;
+use crate::world::World;
 use fault_manager::DetectorId;
 
 /// What all components of an application share.
@@ -33,6 +36,12 @@ pub struct Environment {
     pub devices: Devices,
     /// What waits for the fault manager.
     pub observations: Observations,
+    /// Faults that are made on purpose.
+    pub injections: Injections,
+    /// The simulated world, if there is one.
+    pub world: Option<Arc<World>>,
+    /// For how long a component keeps its executor busy, in simulated time.
+    pub busy: BusyTime,
 }
 
 /// The detectors of one component that the container itself serves.
@@ -68,6 +77,8 @@ pub struct Services {
     critical: Option<(usize, usize)>,
     /// None without a fault manager.
     detectors: Option<Detectors>,
+    /// Faults that it may report by name, by rule.
+    named_faults: Vec<(String, DetectorId)>,
     /// Inputs of which a datum is in work in this cycle, by bits.
     in_work: u64,
     /// An output of this cycle failed its check.
@@ -110,6 +121,7 @@ impl Services {
             bad_pointer: None,
             critical: None,
             detectors: None,
+            named_faults: Vec::new(),
             in_work: 0,
             contaminated: false,
         }
@@ -161,6 +173,7 @@ impl Services {
             place: explanation.place,
             thread_lost: false,
             return_code: if panicked { 0 } else { status.0 },
+            lasted: std::time::Duration::ZERO,
             signal: None,
         }
     }
@@ -225,12 +238,17 @@ impl Services {
             return Status::BAD_INPUT_PARAMETER;
         }
         let mut answer = Status::SUCCESS;
+        let fault = output.fault;
         for (sender, wake) in &mut output.connections {
             match sender.send(self.cycle_ns, self.incarnation, |bytes| data.copy_to(bytes)) {
                 Sent::Queued => wake.wake(),
                 Sent::Full => answer = Status::OUT_OF_RESOURCES,
                 Sent::Unreadable => return self.bad_pointer("raise"),
             }
+        }
+        if let Some(detector) = fault {
+            let name = self.port_name(port as usize);
+            self.report_symptom(detector, format!("event '{name}'"), 0);
         }
         answer
     }

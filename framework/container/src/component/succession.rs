@@ -9,6 +9,7 @@ use system_model::specification::{PortDirection, PortKind};
 use super::port_end::{Calls, PortEnd};
 use super::{Checkpoints, Component, Inbox};
 use crate::library::PortDescription;
+use system_model::injection::ContainerFailure;
 use system_model::life_cycle::LifeCycleState;
 
 /// How the ports and methods that others call by number are numbered in this instance's library,
@@ -160,9 +161,16 @@ impl Component {
     /// Copies the newest certified checkpoint that was taken before `before_ns` to the registered
     /// memory; whether there was one, and what a person should know of it.
     pub fn restore_checkpoint(&mut self, before_ns: u64) -> (bool, String) {
-        let Some(checkpoints) = &self.checkpoints else {
+        let component = self.services.detectors().map(|all| all.component);
+        let injections = &self.services.environment().injections;
+        let corrupt =
+            component.is_some_and(|it| injections.fails(it, ContainerFailure::CheckpointCorrupt));
+        let Some(checkpoints) = &mut self.checkpoints else {
             return (false, "no checkpoints are taken".to_owned());
         };
+        if corrupt {
+            checkpoints.corrupt();
+        }
         let (found, broken) = checkpoints.newest_before(before_ns);
         let broken = match broken {
             0 => String::new(),

@@ -2,6 +2,7 @@
 //! safe value of a command port, samples for process models. A port without rules has none.
 
 mod safe_value;
+mod voter;
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -12,10 +13,12 @@ use fault_manager::{DetectorId, Evidence, Number, Observation, Symptom};
 use system_model::data_type::DataType;
 use system_model::fault::FaultKind;
 
-use crate::port::Receiver;
+use crate::injection::{Injections, Passage};
+use crate::port::{Datum, Receiver};
 use crate::supervision::{Observations, SafetyGate, Sampler};
 
 pub use safe_value::SafeDatum;
+pub use voter::{Source as VotingSource, VotedInput};
 
 /// Where and when a port is used.
 #[derive(Debug, Clone, Copy)]
@@ -26,6 +29,24 @@ pub struct Circumstances<'component> {
     pub incarnation: u32,
     /// Now, in nanoseconds of the container's clock.
     pub now_ns: u64,
+    /// Faults that are made on purpose, if there are any, with the component's and the port's
+    /// number.
+    pub injections: Option<(&'component Injections, usize, usize)>,
+}
+
+impl Circumstances<'_> {
+    fn distort(&self, datum: &mut Datum) -> Passage {
+        let now = Duration::from_nanos(self.now_ns);
+        self.injections
+            .map_or(Passage::Deliver, |(injections, component, port)| {
+                injections.distort(component, port, datum, now)
+            })
+    }
+
+    fn due(&self) -> Option<Datum> {
+        let (injections, component, port) = self.injections?;
+        injections.due(component, port, Duration::from_nanos(self.now_ns))
+    }
 }
 
 /// Checks of the data of one port, with whom they are reported as.
@@ -162,7 +183,7 @@ fn complain(
 /// What stands between a component and one of its outputs.
 pub struct OutputTap {
     /// The datum on its way.
-    pub scratch: Box<[u8]>,
+    pub scratch: Datum,
     /// Checks.
     pub watch: Option<Watch>,
     /// Process models that want to know.
@@ -173,10 +194,31 @@ impl OutputTap {
     /// For data of `size` bytes.
     pub fn new(size: usize) -> Self {
         Self {
-            scratch: vec![0; size].into_boxed_slice(),
+            scratch: Datum::empty(size),
             watch: None,
             samplers: Vec::new(),
         }
+    }
+
+    /// How often the datum on its way goes on: once, unless a fault is injected.
+    pub fn distort(&mut self, at: Circumstances<'_>) -> usize {
+        if at.injections.is_none() {
+            return 1;
+        }
+        match at.distort(&mut self.scratch) {
+            Passage::Deliver => 1,
+            Passage::DeliverTwice => 2,
+            Passage::Withhold => 0,
+        }
+    }
+
+    /// Puts the next delayed datum on its way, if there is one.
+    pub fn resume(&mut self, at: Circumstances<'_>) -> bool {
+        let Some(delayed) = at.due() else {
+            return false;
+        };
+        self.scratch.copy_from(&delayed);
+        true
     }
 
     /// Looks at the datum on its way; whether it is good. A bad one goes on all the same: who reads
@@ -184,12 +226,12 @@ impl OutputTap {
     #[inline]
     pub fn look(&mut self, at: Circumstances<'_>) -> bool {
         for sampler in &self.samplers {
-            sampler.sample(at.now_ns, &self.scratch);
+            sampler.sample(at.now_ns, self.scratch.bytes());
         }
         let Some(watch) = &mut self.watch else {
             return true;
         };
-        !watch.look(at.now_ns, &self.scratch, at)
+        !watch.look(at.now_ns, self.scratch.bytes(), at)
     }
 }
 
@@ -205,8 +247,19 @@ pub struct InputTap {
     pub maximum_age: Option<Duration>,
     /// Process models that want to know.
     pub samplers: Vec<Sampler>,
+    /// Stands in for what is connected.
+    pub voter: Option<Box<VotedInput>>,
     /// When the datum was written that was delivered last.
     delivered_ns: u64,
+    /// A datum that was changed on its way, and whether it is to come once more.
+    changed: Option<(Datum, bool)>,
+}
+
+impl Default for InputTap {
+    /// Without a gate.
+    fn default() -> Self {
+        Self::new(Arc::default())
+    }
 }
 
 impl InputTap {
@@ -218,17 +271,29 @@ impl InputTap {
             gate,
             maximum_age: None,
             samplers: Vec::new(),
+            voter: None,
             delivered_ns: 0,
+            changed: None,
         }
     }
 
-    /// The next datum that the component may see; whether it is one that was sent, and its content.
+    /// The next datum that the component may see; whether it may be given to a successor, and its
+    /// content.
     pub fn receive<'tap>(
         &'tap mut self,
-        source: &'tap mut Receiver,
+        source: Option<&'tap mut Receiver>,
         at: Circumstances<'_>,
     ) -> Option<(bool, &'tap [u8])> {
-        if let Some(datum) = source.receive() {
+        let was_sent = self.voter.is_none();
+        let next = match (&mut self.voter, source) {
+            (Some(voter), _) => voter.receive(at),
+            (None, None) => None,
+            (None, Some(source)) if at.injections.is_some() => {
+                Self::receive_distorted(&mut self.changed, source, at)
+            }
+            (None, Some(source)) => source.receive(),
+        };
+        if let Some(datum) = next {
             let stamp_ns = datum.stamp_ns();
             let watch = self.watch.as_mut();
             let is_good = watch.is_none_or(|watch| !watch.look(stamp_ns, datum.bytes(), at));
@@ -240,7 +305,7 @@ impl InputTap {
                 if let Some(safe) = &mut self.safe {
                     safe.remember(datum.bytes());
                 }
-                return Some((true, datum.bytes()));
+                return Some((was_sent, datum.bytes()));
             }
         }
         let is_stale = self.delivered_ns > 0
@@ -252,5 +317,29 @@ impl InputTap {
             return Some((false, safe.at(at.now_ns)));
         }
         None
+    }
+
+    /// The next datum, as injected faults leave it.
+    #[cold]
+    fn receive_distorted<'tap>(
+        changed: &'tap mut Option<(Datum, bool)>,
+        source: &mut Receiver,
+        at: Circumstances<'_>,
+    ) -> Option<&'tap Datum> {
+        let repeated = changed.as_mut().is_some_and(|it| std::mem::take(&mut it.1));
+        if !repeated {
+            *changed = match at.due() {
+                Some(delayed) => Some((delayed, false)),
+                None => source.receive().and_then(|datum| {
+                    let mut datum = datum.clone();
+                    match at.distort(&mut datum) {
+                        Passage::Deliver => Some((datum, false)),
+                        Passage::DeliverTwice => Some((datum, true)),
+                        Passage::Withhold => None,
+                    }
+                }),
+            };
+        }
+        changed.as_ref().map(|(datum, _)| datum)
     }
 }

@@ -1,5 +1,9 @@
-//! Where code lies in memory: by the instruction pointer a component's own code is told from the
+//! Where code lies in memory, and whose it is: by the instruction pointer a component's own code is told from the
 //! C library's and from ours.
+
+use std::ffi::{CStr, OsStr};
+use std::os::unix::ffi::OsStrExt as _;
+use std::path::PathBuf;
 
 /// Addresses of executable code, end exclusive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,8 +20,22 @@ impl CodeRange {
     pub fn contains(self, address: usize) -> bool {
         (self.start..self.end).contains(&address)
     }
+}
 
-    /// The executable segments of the loaded object (program or library) that `address` is in.
+/// A program or library that is loaded.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LoadedObject {
+    /// What must be added to an address of its file to have it in memory.
+    pub base: usize,
+    /// Its code in memory.
+    pub code: CodeRange,
+    /// Its file as the loader was given it; empty for the program itself. Of a component's copy it
+    /// is the sealed memory that the copy was loaded from.
+    pub file: PathBuf,
+}
+
+impl LoadedObject {
+    /// The loaded object that an address is in, if that has code.
     pub fn around(address: usize) -> Option<Self> {
         let mut search = Search {
             address,
@@ -27,11 +45,16 @@ impl CodeRange {
         unsafe { libc::dl_iterate_phdr(Some(visit), (&raw mut search).cast()) };
         search.found
     }
+
+    /// Whether it is a library, and not the program itself.
+    pub fn is_library(&self) -> bool {
+        !self.file.as_os_str().is_empty()
+    }
 }
 
 struct Search {
     address: usize,
-    found: Option<CodeRange>,
+    found: Option<LoadedObject>,
 }
 
 unsafe extern "C" fn visit(
@@ -60,13 +83,27 @@ unsafe extern "C" fn visit(
     if !here {
         return 0;
     }
-    for code in loaded
-        .filter(|one| one.p_flags & libc::PF_X != 0)
-        .map(range)
-    {
-        let found = search.found.get_or_insert(code);
-        found.start = found.start.min(code.start);
-        found.end = found.end.max(code.end);
-    }
+    let executable = loaded.filter(|one| one.p_flags & libc::PF_X != 0);
+    let code = executable.map(range).reduce(|all, one| CodeRange {
+        start: all.start.min(one.start),
+        end: all.end.max(one.end),
+    });
+    search.found = code.map(|code| LoadedObject {
+        base: information.dlpi_addr as usize,
+        code,
+        // SAFETY: the loader keeps a terminated name, or null.
+        file: unsafe { file_name(information.dlpi_name) },
+    });
     1
+}
+
+/// # Safety
+/// `name` must be null or a terminated string.
+unsafe fn file_name(name: *const libc::c_char) -> PathBuf {
+    if name.is_null() {
+        return PathBuf::new();
+    }
+    // SAFETY: by this function's contract.
+    let name = unsafe { CStr::from_ptr(name) };
+    PathBuf::from(OsStr::from_bytes(name.to_bytes()))
 }

@@ -7,7 +7,7 @@ use std::mem;
 use std::ptr;
 use std::sync::OnceLock;
 
-use super::code::CodeRange;
+use super::code::{CodeRange, LoadedObject};
 use super::registers;
 use super::trap::{self, Trap};
 
@@ -21,7 +21,7 @@ static OWN_CODE: OnceLock<CodeRange> = OnceLock::new();
 
 /// Real-time signals are for applications; the C library keeps the first two, and a number in the
 /// middle is less likely to be another library's.
-fn signal() -> libc::c_int {
+pub(super) fn signal() -> libc::c_int {
     libc::SIGRTMIN() + 5
 }
 
@@ -36,7 +36,7 @@ pub fn interrupt(thread: i32) {
 
 /// Installs the handler. Called once a process.
 pub(super) fn install() {
-    let own = CodeRange::around(handle as *const () as usize);
+    let own = LoadedObject::around(handle as *const () as usize).map(|program| program.code);
     // A second call would set the same.
     let _set_before = OWN_CODE.set(own.unwrap_or(CodeRange { start: 0, end: 0 }));
     // SAFETY: an all-zero action is a valid one; the fields that matter are set below.
@@ -66,10 +66,11 @@ extern "C" fn handle(
     let Some(inside) = loss.watch().condemned() else {
         return;
     };
-    let (instruction_pointer, stack_pointer) = registers::position(context);
+    let registers = registers::interrupted(context);
+    let instruction_pointer = registers.instruction_pointer;
     // SAFETY: the host side outlives the call.
     let is_answering = unsafe { &*frame.context }.is_answering();
-    if !frame.trap.stack_ptr_in_bounds(stack_pointer) || is_answering {
+    if !frame.trap.stack_ptr_in_bounds(registers.stack_pointer) || is_answering {
         // A host call: it ends by itself.
         return;
     }
@@ -77,7 +78,7 @@ extern "C" fn handle(
         signal,
         code: information.si_code,
         address: 0,
-        instruction_pointer,
+        registers,
         stack_overflow: false,
         hang: Some(inside.limit.duration()),
     };

@@ -15,7 +15,7 @@ use corosensei::Yielder;
 use corosensei::stack::Stack as _;
 
 use super::copy::guarded_copy;
-use super::stack::ComponentStack;
+use super::stack::{ComponentStack, StackMemory};
 use super::{Callback, Exit, Input, Misbehaviour, What, Yielded};
 
 /// What a component asks. Pointers are as the component gave them: anything.
@@ -165,6 +165,8 @@ pub(super) struct HostSide {
     answering: AtomicBool,
     /// What happens at the next callback.
     injection: Cell<Option<Misbehaviour>>,
+    /// Whether the component has tried to change signals that the guard needs.
+    meddled: Cell<bool>,
     exit: Cell<Exit>,
     base: usize,
     limit: usize,
@@ -191,6 +193,7 @@ impl HostSide {
             answer: Cell::new(answer_nothing),
             answering: AtomicBool::new(false),
             injection: Cell::new(None),
+            meddled: Cell::new(false),
             exit: Cell::new(Exit::Abort),
             base: 0,
             limit: 0,
@@ -199,6 +202,13 @@ impl HostSide {
 
     pub(super) fn limit(&self) -> usize {
         self.limit
+    }
+
+    pub(super) fn stack(&self) -> StackMemory {
+        StackMemory {
+            limit: self.limit,
+            base: self.base,
+        }
     }
 
     pub(super) fn context(&self) -> *mut HostContext {
@@ -219,7 +229,7 @@ impl HostSide {
 
     /// Whether the caller runs on this component's own stack: threads of the component's own may
     /// hold the context, but may not suspend a coroutine that they are not inside of.
-    fn called_on_own_stack(&self) -> bool {
+    pub(super) fn called_on_own_stack(&self) -> bool {
         let here = 0u8;
         let address = (&raw const here).addr();
         (self.limit..self.base).contains(&address)
@@ -231,6 +241,11 @@ impl HostSide {
 
     pub(super) fn set_callback(&self, callback: Callback) {
         self.callback.set(callback);
+    }
+
+    /// Whether it has been called before.
+    pub(super) fn has_meddled(&self) -> bool {
+        self.meddled.replace(true)
     }
 
     pub(super) fn set_injection(&self, misbehaviour: Option<Misbehaviour>) {

@@ -28,7 +28,7 @@ fn end_component(exit: Exit) {
 }
 
 /// The function of this name in the next library, that is, the C library.
-fn next(name: &CStr) -> *mut libc::c_void {
+pub(super) fn next(name: &CStr) -> *mut libc::c_void {
     // SAFETY: a look-up by a terminated name.
     unsafe { libc::dlsym(libc::RTLD_NEXT, name.as_ptr()) }
 }

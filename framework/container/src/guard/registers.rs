@@ -5,14 +5,29 @@ use corosensei::trap::TrapHandlerRegs;
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 compile_error!("the guard knows the signal contexts of x86-64 and ARM64 only");
 
-/// Instruction pointer and stack pointer at the interruption.
+/// Where a thread was interrupted: what it takes to follow its calls.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Registers {
+    /// Instruction pointer.
+    pub instruction_pointer: usize,
+    /// Stack pointer.
+    pub stack_pointer: usize,
+    /// Frame pointer (`rbp`, `x29`).
+    pub frame_pointer: usize,
+    /// Link register (`x30`); 0 where there is none.
+    pub link: usize,
+}
+
+/// The registers at the interruption.
 #[cfg(target_arch = "x86_64")]
-pub(super) fn position(context: &libc::ucontext_t) -> (usize, usize) {
+pub(super) fn interrupted(context: &libc::ucontext_t) -> Registers {
     let registers = &context.uc_mcontext.gregs;
-    (
-        registers[libc::REG_RIP as usize] as usize,
-        registers[libc::REG_RSP as usize] as usize,
-    )
+    Registers {
+        instruction_pointer: registers[libc::REG_RIP as usize] as usize,
+        stack_pointer: registers[libc::REG_RSP as usize] as usize,
+        frame_pointer: registers[libc::REG_RBP as usize] as usize,
+        link: 0,
+    }
 }
 
 /// Continues at `instruction_pointer` with all else unchanged.
@@ -44,13 +59,16 @@ pub(super) fn redirect(context: &mut libc::ucontext_t, registers: &TrapHandlerRe
     }
 }
 
-/// Instruction pointer and stack pointer at the interruption.
+/// The registers at the interruption.
 #[cfg(target_arch = "aarch64")]
-pub(super) fn position(context: &libc::ucontext_t) -> (usize, usize) {
-    (
-        context.uc_mcontext.pc as usize,
-        context.uc_mcontext.sp as usize,
-    )
+pub(super) fn interrupted(context: &libc::ucontext_t) -> Registers {
+    let registers = &context.uc_mcontext;
+    Registers {
+        instruction_pointer: registers.pc as usize,
+        stack_pointer: registers.sp as usize,
+        frame_pointer: registers.regs[29] as usize,
+        link: registers.regs[30] as usize,
+    }
 }
 
 /// Continues at `instruction_pointer` with all else unchanged.

@@ -6,6 +6,8 @@ use std::ptr;
 
 use corosensei::stack::{Stack, StackPointer};
 
+use super::copy::guarded_copy;
+
 /// Usable stack. Address space only: pages become memory when they are touched. As much as a main
 /// thread's first megabyte, so that code with large frames works without being told.
 const STACK_BYTES: usize = 1 << 20;
@@ -49,6 +51,32 @@ impl ComponentStack {
     /// Whether `address` lies in the guard area: a stack pointer or a fault there is an overflow.
     pub(super) fn guard_contains(limit: usize, address: usize) -> bool {
         (limit..limit + GUARD_BYTES).contains(&address)
+    }
+}
+
+/// The memory of a stack, whatever became of it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StackMemory {
+    /// Lowest address.
+    pub(super) limit: usize,
+    /// One past the highest.
+    pub(super) base: usize,
+}
+
+impl StackMemory {
+    /// The word at an address; `None` outside the stack and in its guard area.
+    pub(super) fn read(self, address: usize) -> Option<usize> {
+        const WORD_BYTES: usize = size_of::<usize>();
+        let end = address.checked_add(WORD_BYTES)?;
+        if address < self.limit || end > self.base {
+            return None;
+        }
+        let mut word = 0usize;
+        // SAFETY: `word` is ours; the other side is what nobody reads but the component, and may be
+        // inaccessible, which the copy survives.
+        let readable =
+            unsafe { guarded_copy((&raw mut word).cast(), address as *const u8, WORD_BYTES) };
+        readable.then_some(word)
     }
 }
 

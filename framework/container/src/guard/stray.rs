@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicI32, AtomicPtr, AtomicUsize, Ordering}
 
 use super::code::CodeRange;
 use super::copy::guarded_copy;
+use super::registers::Registers;
 use super::trap::Trap;
 
 /// Copies of libraries that can be told apart; further ones are protected in their callbacks only.
@@ -58,7 +59,10 @@ impl Word {
             signal: self.signal.load(Ordering::Relaxed),
             code: 0,
             address: self.address.load(Ordering::Relaxed),
-            instruction_pointer: self.instruction_pointer.load(Ordering::Relaxed),
+            registers: Registers {
+                instruction_pointer: self.instruction_pointer.load(Ordering::Relaxed),
+                ..Registers::default()
+            },
             stack_overflow: false,
             hang: None,
         })

@@ -18,7 +18,7 @@ use super::copy;
 use super::hang;
 use super::injection;
 use super::loss::Loss;
-use super::registers;
+use super::registers::{self, Registers};
 use super::stack::ComponentStack;
 use super::stray;
 
@@ -27,7 +27,7 @@ use super::stray;
 const HANDLER_STACK_BYTES: usize = 64 * 1024;
 
 /// The synchronous signals, and abort.
-const SIGNALS: [libc::c_int; 6] = [
+pub(super) const SIGNALS: [libc::c_int; 6] = [
     libc::SIGSEGV,
     libc::SIGBUS,
     libc::SIGFPE,
@@ -45,8 +45,8 @@ pub struct Trap {
     pub code: i32,
     /// `si_addr`: the address that could not be accessed, or the faulting instruction.
     pub address: usize,
-    /// Instruction pointer.
-    pub instruction_pointer: usize,
+    /// Where the component was.
+    pub registers: Registers,
     /// Whether the stack's guard area was hit.
     pub stack_overflow: bool,
     /// The limit that the callback did not keep, if the watchdog broke it off; then the signal is
@@ -158,7 +158,9 @@ extern "C" fn handle(
     let information = unsafe { &*information };
     // SAFETY: as above; the handler is the only user of the context.
     let context = unsafe { &mut *context.cast::<libc::ucontext_t>() };
-    let (instruction_pointer, stack_pointer) = registers::position(context);
+    let registers = registers::interrupted(context);
+    let (instruction_pointer, stack_pointer) =
+        (registers.instruction_pointer, registers.stack_pointer);
     if let Some(exit) = copy::fault_exit(instruction_pointer) {
         registers::jump(context, exit);
         return;
@@ -169,13 +171,7 @@ extern "C" fn handle(
         Some(frame)
             if frame.trap.stack_ptr_in_bounds(stack_pointer) && !sent_by_others(information) =>
         {
-            let trap = record(
-                signal,
-                information,
-                frame,
-                instruction_pointer,
-                stack_pointer,
-            );
+            let trap = record(signal, information, frame, registers);
             if frame.is_own_code(instruction_pointer) {
                 take_off(frame, trap, context);
             } else {
@@ -204,22 +200,16 @@ fn sent_by_others(information: &libc::siginfo_t) -> bool {
     u32::try_from(sender) != Ok(std::process::id())
 }
 
-fn record(
-    signal: i32,
-    information: &libc::siginfo_t,
-    frame: &Frame,
-    instruction_pointer: usize,
-    stack_pointer: usize,
-) -> Trap {
+fn record(signal: i32, information: &libc::siginfo_t, frame: &Frame, registers: Registers) -> Trap {
     let address = address(signal, information);
     let overflow = matches!(signal, libc::SIGSEGV | libc::SIGBUS)
         && (ComponentStack::guard_contains(frame.limit, address)
-            || ComponentStack::guard_contains(frame.limit, stack_pointer));
+            || ComponentStack::guard_contains(frame.limit, registers.stack_pointer));
     Trap {
         signal,
         code: information.si_code,
         address,
-        instruction_pointer,
+        registers,
         stack_overflow: overflow,
         hang: None,
     }

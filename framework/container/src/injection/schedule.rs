@@ -70,14 +70,19 @@ impl Schedule {
         injections: impl IntoIterator<Item = Injection>,
         seed: u64,
     ) -> Result<Self, TooManyInjections> {
-        let mut schedule = Self {
-            entries: Vec::new(),
-            seed,
-        };
+        let mut schedule = Self::empty(seed);
         for injection in injections {
             schedule.add(injection, Duration::ZERO)?;
         }
         Ok(schedule)
+    }
+
+    /// A run without injections so far.
+    pub fn empty(seed: u64) -> Self {
+        Self {
+            entries: Vec::new(),
+            seed,
+        }
     }
 
     /// Adds an injection whose times count from `now`, and returns its number.

@@ -16,7 +16,7 @@ use rustix::fs::{MemfdFlags, SealFlags};
 
 use super::LibraryError;
 use super::description::{ComponentDescription, describe};
-use crate::guard::CodeRange;
+use crate::guard::{CodeRange, LoadedObject};
 
 /// One loaded copy of a component library.
 #[derive(Debug, Clone)]
@@ -58,15 +58,16 @@ impl LoadedLibrary {
             path: path.to_owned(),
             reason,
         })?;
-        let code = CodeRange::around(std::ptr::from_ref(descriptor).addr()).ok_or_else(|| {
-            LibraryError::Descriptor {
-                path: path.to_owned(),
-                reason: "it has no executable segment".to_owned(),
-            }
-        })?;
+        let object =
+            LoadedObject::around(std::ptr::from_ref(descriptor).addr()).ok_or_else(|| {
+                LibraryError::Descriptor {
+                    path: path.to_owned(),
+                    reason: "it has no executable segment".to_owned(),
+                }
+            })?;
         Ok(Self {
             description,
-            code,
+            code: object.code,
             path: path.to_owned(),
         })
     }

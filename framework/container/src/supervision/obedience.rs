@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use fault_manager::{ActionId, ActionOutcome, Observation};
+use system_model::injection::ContainerFailure;
 use system_model::life_cycle::{LifeCycleState, Operation};
 use system_model::specification::ExecutionKind;
 
@@ -62,6 +63,11 @@ fn perform(
     let Some(standbys) = supervisor.standbys(order.component) else {
         return Err("there is no such component".to_owned());
     };
+    let recovers = matches!(order.task, Task::Reset { .. } | Task::Replace { .. });
+    let injections = &supervisor.environment().injections;
+    if recovers && injections.fails(order.component, ContainerFailure::RecoveryFails) {
+        return Err("injected failure of the recovery".to_owned());
+    }
     match &order.task {
         Task::Reset {
             checkpoint_before_ns,

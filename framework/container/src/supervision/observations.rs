@@ -1,6 +1,7 @@
 //! What was observed and waits for the fault manager: one bounded queue for everybody.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crossbeam::queue::ArrayQueue;
 use fault_manager::Observation;
@@ -20,6 +21,8 @@ pub struct Observations {
     queue: ArrayQueue<Observation>,
     pending: AtomicBool,
     dropped: AtomicU64,
+    /// What will only be known at a later time of a simulated clock, in nanoseconds.
+    later: Mutex<Vec<(u64, Observation)>>,
 }
 
 impl Default for Observations {
@@ -28,6 +31,7 @@ impl Default for Observations {
             queue: ArrayQueue::new(QUEUE),
             pending: AtomicBool::new(false),
             dropped: AtomicU64::new(0),
+            later: Mutex::default(),
         }
     }
 }
@@ -45,6 +49,32 @@ impl Observations {
             self.dropped.fetch_add(1, Ordering::Relaxed);
         }
         self.pending.store(true, Ordering::Release);
+    }
+
+    /// Leaves an observation that can only be made at a later time of a simulated clock.
+    pub fn report_at(&self, time_ns: u64, observation: Observation) {
+        self.later().push((time_ns, observation));
+    }
+
+    /// When the first of those can be made.
+    pub fn due_ns(&self) -> Option<u64> {
+        self.later().iter().map(|(time_ns, _)| *time_ns).min()
+    }
+
+    /// Makes those whose time has come.
+    pub fn mature(&self, now_ns: u64) {
+        let mut later = self.later();
+        let (due, rest) = later.drain(..).partition(|(time_ns, _)| *time_ns <= now_ns);
+        *later = rest;
+        drop(later);
+        let due: Vec<(u64, Observation)> = due;
+        for (_, observation) in due {
+            self.report(observation);
+        }
+    }
+
+    fn later(&self) -> MutexGuard<'_, Vec<(u64, Observation)>> {
+        self.later.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Whether there is something to take.

@@ -4,6 +4,7 @@
 //! thread is at it, that thread sees the observation too. What is to be done with a component is an
 //! order to its executor.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
 
@@ -12,10 +13,10 @@ use fault_manager::{
     Action, ActionId, ActionOutcome, Effect, FaultManager, Observation, PlannedAction, Verdict,
 };
 
-use super::Monitors;
 use super::emergency::Emergency;
 use super::orders::{Order, Orders, Task};
 use super::standby::Standbys;
+use super::{LOOK_PERIOD, Monitors};
 use crate::component::Environment;
 use crate::event_log::Event;
 use crate::guard::loss::Loss;
@@ -35,6 +36,8 @@ pub struct Supervisor {
     monitors: Mutex<Monitors>,
     /// Wakes the thread that looks after time.
     wake: Wake,
+    /// When injections were looked at last, in nanoseconds.
+    injected_ns: AtomicU64,
     /// Components of which a standby was used, for the thread that prepares another.
     wanted: Sender<usize>,
 }
@@ -70,6 +73,7 @@ impl Supervisor {
             emergency,
             monitors: Mutex::new(monitors),
             wake: Wake::default(),
+            injected_ns: AtomicU64::new(0),
             wanted,
         };
         (supervisor, wants)
@@ -133,6 +137,8 @@ impl Supervisor {
     /// What time brings: orders that are due, deadlines of the fault manager.
     pub fn tick(&self) {
         let now_ns = self.environment.clock.now_ns();
+        self.environment.observations.mature(now_ns);
+        self.inject(now_ns);
         self.monitors
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
@@ -172,7 +178,15 @@ impl Supervisor {
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .due_ns();
-        [later, manager, monitors].into_iter().flatten().min()
+        let observations = self.environment.observations.due_ns();
+        let injections = self.environment.injections.is_armed().then(|| {
+            let period_ns = nanoseconds(LOOK_PERIOD);
+            (self.injected_ns.load(Ordering::Relaxed) / period_ns + 1) * period_ns
+        });
+        [later, manager, monitors, observations, injections]
+            .into_iter()
+            .flatten()
+            .min()
     }
 
     /// Sleeps until something may be due, at most `limit`.
@@ -194,6 +208,20 @@ impl Supervisor {
     /// Whether the emergency stop is latched.
     pub fn is_emergency(&self) -> bool {
         self.lock().manager.is_emergency()
+    }
+
+    /// Faults that begin and end with time.
+    fn inject(&self, now_ns: u64) {
+        let environment = &self.environment;
+        if !environment.injections.is_armed() {
+            return;
+        }
+        self.injected_ns.store(now_ns, Ordering::Relaxed);
+        let now = Duration::from_nanos(now_ns);
+        let changed = environment
+            .injections
+            .advance(now, environment.world.as_deref());
+        environment.record_injections(&changed);
     }
 
     fn process(&self) {
@@ -350,6 +378,6 @@ impl Supervisor {
 }
 
 /// A duration in nanoseconds; 584 years are enough.
-pub(super) fn nanoseconds(duration: Duration) -> u64 {
+pub(crate) fn nanoseconds(duration: Duration) -> u64 {
     u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
 }

@@ -1,9 +1,11 @@
 //! Puts the fault manager in charge of an assembled application: every rule finds its place.
 
 mod actuators;
+mod injections;
 mod models;
 mod ports;
 mod rhythm;
+mod voters;
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,10 +17,12 @@ use system_model::rules::{ComponentRules, FaultRules};
 use system_model::specification::{ApplicationSpecification, Place};
 
 use crate::assembly::{Assembly, AssemblyProblem};
-use crate::component::{Component, Detectors, Environment};
+use crate::component::{Component, Detectors, Environment, PortEnd};
 use crate::lane::SETUP_TOKEN;
 use crate::library::PortDescription;
 use crate::supervision::{Monitors, Orders, Standbys, Supervisor};
+
+pub(super) use injections::inject;
 
 /// Everything that rules are about.
 struct Subjects<'start> {
@@ -58,6 +62,7 @@ pub(super) fn supervise(
     }
     let emergency = actuators::find(&subjects);
     ports::watch(&subjects, &emergency, &mut monitors, &mut problems);
+    voters::insert(&subjects, &mut problems);
     rhythm::watch(&subjects, &mut monitors);
     models::watch(&subjects, &mut monitors, &mut problems);
     if !problems.is_empty() {
@@ -105,6 +110,31 @@ impl Subjects<'_> {
         }
     }
 
+    /// Faults that the component itself tells of, by an event or by its report service.
+    fn watch_fault_events(&self, index: usize) {
+        let rules = self.rules_of(index).map_or(&[][..], |it| &it.fault_events);
+        for (number, rule) in rules.iter().enumerate() {
+            let kind = DetectorKind::FaultEvent(Some(number));
+            let Some(detector) = self.detector(index, kind) else {
+                continue;
+            };
+            let port = rule.value.port.as_ref();
+            let port = port.and_then(|port| self.port(index, port));
+            self.with_component(index, |component| match port {
+                Some((port, _)) => {
+                    let end = component.services_mut().port_mut(port);
+                    if let Some(PortEnd::EventOutput(output)) = end {
+                        output.fault = Some(detector);
+                    }
+                }
+                None => {
+                    let name = rule.value.name.clone();
+                    component.services_mut().name_fault(name, detector);
+                }
+            });
+        }
+    }
+
     fn instrument(&self, index: usize) {
         let detectors = (|| {
             Some(Detectors {
@@ -114,6 +144,7 @@ impl Subjects<'_> {
                 reported: self.detector(index, DetectorKind::FaultEvent(None))?,
             })
         })();
+        self.watch_fault_events(index);
         let resurrect = self.rules_of(index).and_then(|it| it.resurrect.as_ref());
         let backup = resurrect.and_then(|rule| rule.value.backup);
         self.with_component(index, |component| {

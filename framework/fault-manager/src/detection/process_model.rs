@@ -18,6 +18,7 @@ mod input_map;
 mod kalman;
 mod monitor;
 mod sampling;
+mod slopes;
 #[cfg(test)]
 mod tests;
 
@@ -53,8 +54,8 @@ pub enum ModelError {
     NoCovariance,
     /// The rule sets a parameter that no model has, or to a value that it cannot have.
     #[error(
-        "`{0}` is no parameter of a model; there are input_delay_ms (from 0), process_noise_scale \
-         and measurement_noise_scale"
+        "`{0}` is no parameter of a model; there are input_delay_ms and input_jitter_ms (from 0), \
+         process_noise_scale and measurement_noise_scale"
     )]
     Parameter(String),
 }

@@ -7,6 +7,7 @@ mod execution;
 mod header;
 pub(crate) mod injection;
 mod ports;
+mod process_model;
 mod project;
 pub(crate) mod rules;
 mod service_type;
@@ -17,10 +18,11 @@ use system_model::profile::Profile;
 
 use crate::document::Document;
 
+pub use process_model::{ProcessModelOutcome, load_process_model};
 pub use world::{WorldOutcome, load_world};
 
 /// The roots that [`read_profile`] understands.
-pub const PROFILE_ROOTS: [&str; 12] = [
+pub const PROFILE_ROOTS: [&str; 13] = [
     "component_profile",
     "package_profile",
     "application_profile",
@@ -31,6 +33,7 @@ pub const PROFILE_ROOTS: [&str; 12] = [
     "system_profile",
     "OPRoSProject",
     world::WORLD_ROOT,
+    process_model::MODEL_ROOT,
     rules::RULES_ROOT,
     injection::INJECTIONS_ROOT,
 ];
@@ -69,13 +72,19 @@ pub(crate) const FAULT_TOLERANCE: [&str; 27] = [
 
 /// Makes a document typed. A profile with errors is still returned, as far as it could be
 /// understood; ask [`Document::has_errors`] before it is used. A world is looked through for its
-/// problems, but it is no profile; [`load_world`] returns it. So is a rule file, whose rules mean
-/// something only together with their application; [`load_rules`](crate::load_rules) returns them,
-/// and [`load_injections`](crate::load_injections) those of an injection file.
+/// problems, but it is no profile; [`load_world`] returns it. So is a reference model
+/// ([`load_process_model`]), and a rule file, whose rules mean something only together with their
+/// application; [`load_rules`](crate::load_rules) returns them, and
+/// [`load_injections`](crate::load_injections) those of an injection file.
 pub fn read_profile(document: &Document) -> Option<Profile> {
     let root = document.root(&PROFILE_ROOTS)?;
     if root.name() == world::WORLD_ROOT {
         let _looked_through = world::read(&root);
+        root.finish();
+        return None;
+    }
+    if root.name() == process_model::MODEL_ROOT {
+        let _looked_through = process_model::read(&root);
         root.finish();
         return None;
     }

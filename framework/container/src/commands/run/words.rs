@@ -33,6 +33,16 @@ pub(super) fn describe(event: &Event) -> Option<String> {
             )
         }
         Event::Verdict(verdict) => judged(verdict),
+        Event::Injection {
+            fault,
+            component,
+            change,
+        } => format!(
+            "injected fault {fault} {change}{}",
+            component
+                .as_ref()
+                .map_or_else(String::new, |name| format!(" in {name}"))
+        ),
         Event::DatumSetAside {
             component, port, ..
         } => format!(

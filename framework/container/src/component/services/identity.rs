@@ -3,12 +3,28 @@
 use std::sync::Arc;
 
 use component_abi::Status;
+use fault_manager::DetectorId;
 
 use super::{Detectors, Environment, Services};
 use crate::component::port_end::{Inbox, PortEnd};
 use crate::event_log::Event;
 use crate::guard::{ForeignBytes, ForeignBytesMut};
+use crate::injection::Changed;
 use crate::library::PortDescription;
+
+impl Environment {
+    /// Puts injected faults on record that have begun or ended.
+    pub fn record_injections(&self, changed: &[Changed]) {
+        for change in changed {
+            let event = Event::Injection {
+                fault: change.fault,
+                component: change.component.clone(),
+                change: if change.begins { "begins" } else { "ends" },
+            };
+            self.events.record(self.clock.now_ns(), event);
+        }
+    }
+}
 
 impl Services {
     /// Instance name.
@@ -34,6 +50,11 @@ impl Services {
     /// From now on the fault manager is told.
     pub fn set_detectors(&mut self, detectors: Detectors) {
         self.detectors = Some(detectors);
+    }
+
+    /// Faults of this name that the component reports are those of a rule.
+    pub fn name_fault(&mut self, name: String, detector: DetectorId) {
+        self.named_faults.push((name, detector));
     }
 
     /// The ports, as the library describes them.
@@ -63,6 +84,7 @@ impl Services {
     /// What belongs to the name rather than to the instance.
     pub(in crate::component) fn take_over(&mut self, predecessor: &mut Self) {
         self.detectors = predecessor.detectors;
+        self.named_faults = std::mem::take(&mut predecessor.named_faults);
         self.cycle_ns = predecessor.cycle_ns;
     }
 

@@ -1,6 +1,7 @@
 //! What components ask for now and then: properties, log, fault reports, devices.
 
 use component_abi::Status;
+use fault_manager::{DetectorId, Evidence, Observation, Symptom};
 use system_model::fault::{Fault, FaultKind};
 
 use super::Services;
@@ -63,7 +64,40 @@ impl Services {
         );
         fault.return_code = code.0;
         self.record(Event::fault(&self.name, self.incarnation, &fault));
+        let named = self.named_faults.iter();
+        let named = named.filter(|(name, _)| message.starts_with(name.as_str()));
+        let narrowest = named.max_by_key(|(name, _)| name.len());
+        let detector = narrowest
+            .map(|(_, detector)| *detector)
+            .or_else(|| self.detectors.map(|all| all.reported));
+        if let Some(detector) = detector {
+            self.report_symptom(detector, fault.message, code.0);
+        }
         Ok(Status::SUCCESS)
+    }
+
+    /// A fault that the component itself told of; it goes on.
+    pub(super) fn report_symptom(&self, detector: DetectorId, message: String, return_code: u32) {
+        let symptom = Symptom {
+            detector,
+            incarnation: self.incarnation,
+            kind: FaultKind::Reported,
+            return_code,
+            at: self.environment.clock.now(),
+            runs: true,
+            evidence: Evidence::Exception {
+                callback: self.callback.to_owned(),
+                message,
+                place: None,
+                signal: None,
+                address: None,
+                backtrace: Vec::new(),
+                thread_lost: false,
+            },
+        };
+        self.environment
+            .observations
+            .report(Observation::Symptom(Box::new(symptom)));
     }
 
     pub(super) fn failed(

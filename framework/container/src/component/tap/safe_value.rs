@@ -49,9 +49,7 @@ impl SafeDatum {
     /// The safe command, of this time.
     pub fn at(&mut self, now_ns: u64) -> &[u8] {
         for (field, value) in &self.values {
-            write(&mut self.bytes, field, |scalar, place| {
-                encode(scalar, *value, place);
-            });
+            write_number(&mut self.bytes, field, *value);
         }
         for field in &self.stamps {
             write(&mut self.bytes, field, |_, place| {
@@ -60,6 +58,11 @@ impl SafeDatum {
         }
         &self.bytes
     }
+}
+
+/// Writes a number into all elements of a field.
+pub(super) fn write_number(bytes: &mut [u8], field: &Field, value: f64) {
+    write(bytes, field, |scalar, place| encode(scalar, value, place));
 }
 
 /// Whether a field is a time stamp of the container's clock, as those of the robot's data are.

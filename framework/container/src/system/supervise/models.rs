@@ -183,7 +183,7 @@ fn attach(subjects: &Subjects<'_>, port: &RulePort, sampler: Sampler) {
             Some(PortEnd::DataInput(input)) => {
                 let tap = input
                     .tap
-                    .get_or_insert_with(|| Box::new(InputTap::new(Arc::default())));
+                    .get_or_insert_with(|| Box::new(InputTap::default()));
                 tap.samplers.push(sampler);
             }
             _ => {}

@@ -31,6 +31,8 @@ pub struct DiscreteModel {
     pub period: Duration,
     /// Samples after which an input acts.
     pub delay: usize,
+    /// Samples by which an input may act earlier or later.
+    pub jitter: f64,
 }
 
 impl DiscreteModel {
@@ -71,6 +73,7 @@ impl DiscreteModel {
             initial: DVector::from_column_slice(&space.initial),
             period: space.period,
             delay: delay.round() as usize,
+            jitter: model.input_jitter.as_secs_f64() / period_s,
         };
         model.checked()
     }

@@ -2,12 +2,13 @@
 
 use std::time::Duration;
 
-use nalgebra::DVector;
+use nalgebra::{DVector, Schur};
 use system_model::process_model::ProcessModel;
 use system_model::rules::{DecisionRule, ProcessModelRule};
 
 use super::decision::{Judge, bounded};
 use super::sampling::{Sample, SampleClock};
+use super::slopes::Slopes;
 use super::{DiscreteModel, KalmanFilter, ModelError, Residual};
 use crate::detection::Finding;
 
@@ -37,6 +38,7 @@ pub struct Monitor {
     state: DVector<f64>,
     /// The inputs of the last samples, the one that acts now first.
     delayed: Vec<DVector<f64>>,
+    slopes: Slopes,
     scratch: Scratch,
 }
 
@@ -50,7 +52,7 @@ struct Scratch {
 
 impl Monitor {
     /// A monitor by a rule. Its `parameter` elements change the model: `input_delay_ms`,
-    /// `process_noise_scale`, `measurement_noise_scale`.
+    /// `input_jitter_ms`, `process_noise_scale`, `measurement_noise_scale`.
     ///
     /// # Errors
     /// When the model has no discrete form or no filter, the window is too long, or there is no such
@@ -61,11 +63,7 @@ impl Monitor {
         let (states, outputs) = (model.a.nrows(), model.outputs());
         let deviations = model.residual_variances().map(f64::sqrt);
         let judge = Judge::new(rule, outputs, model.period, Some(deviations.as_slice()))?;
-        let decays = model
-            .a
-            .complex_eigenvalues()
-            .iter()
-            .all(|pole| pole.norm() < 1.0);
+        let decays = decays(&model);
         Ok(Self {
             is_filtering: rule.method == DecisionRule::ChiSquare,
             outlier: chi_square_quantile(outputs, OUTLIER_QUANTILE),
@@ -79,6 +77,7 @@ impl Monitor {
                 residual: DVector::zeros(outputs),
                 output: DVector::zeros(outputs),
             },
+            slopes: Slopes::new(outputs),
             clock: SampleClock::new(model.period),
             model,
             filter,
@@ -154,6 +153,7 @@ impl Monitor {
         for input in &mut self.delayed {
             input.fill(0.0);
         }
+        self.slopes.reset();
         (self.held, self.settling) = (0, 0);
     }
 
@@ -215,13 +215,17 @@ impl Monitor {
         }
     }
 
-    /// Measured minus predicted outputs.
+    /// Measured minus predicted outputs, less what jitter of the inputs explains.
     fn compare(&mut self, outputs: &[f64]) {
-        let residual = &mut self.scratch.residual;
-        residual.copy_from_slice(outputs);
-        residual.gemv(-1.0, &self.model.c, &self.state, 1.0);
-        residual.gemv(-1.0, &self.model.d, &self.delayed[0], 1.0);
-        residual.apply(|residual| *residual = bounded(*residual));
+        let expected = &mut self.scratch.output;
+        expected.gemv(1.0, &self.model.c, &self.state, 0.0);
+        expected.gemv(1.0, &self.model.d, &self.delayed[0], 1.0);
+        self.slopes.follow(expected);
+        for (output, residual) in self.scratch.residual.iter_mut().enumerate() {
+            let difference = bounded(outputs[output] - expected[output]);
+            let excused = self.model.jitter * self.slopes.steepest(output);
+            *residual = (difference.abs() - excused).max(0.0).copysign(difference);
+        }
     }
 
     /// The filter learns from what is no outlier, as long as nothing is suspected.
@@ -241,14 +245,32 @@ impl Monitor {
     }
 }
 
+/// Whether every state comes right by itself; a model whose poles are not found is not trusted.
+fn decays(model: &DiscreteModel) -> bool {
+    // Eigenvalues of a small matrix take a few iterations each.
+    const ITERATIONS_MAXIMUM: usize = 10_000;
+    let schur = Schur::try_new(model.a.clone(), f64::EPSILON, ITERATIONS_MAXIMUM);
+    schur.is_some_and(|schur| {
+        let poles = schur.complex_eigenvalues();
+        poles.iter().all(|pole| pole.norm() < 1.0)
+    })
+}
+
 /// The model with the parameters of the rule.
 fn adjusted(model: &ProcessModel, rule: &ProcessModelRule) -> Result<ProcessModel, ModelError> {
     let mut model = model.clone();
     for (name, value) in &rule.parameters {
+        let time = || {
+            let time = Duration::try_from_secs_f64(value / 1000.0);
+            time.map_err(|_| ModelError::Parameter(name.clone()))
+        };
         let noise = match name.as_str() {
             "input_delay_ms" => {
-                model.input_delay = Duration::try_from_secs_f64(value / 1000.0)
-                    .map_err(|_| ModelError::Parameter(name.clone()))?;
+                model.input_delay = time()?;
+                continue;
+            }
+            "input_jitter_ms" => {
+                model.input_jitter = time()?;
                 continue;
             }
             "process_noise_scale" => &mut model.process_noise,

@@ -35,6 +35,7 @@ pub(super) fn continuous(a: Matrix, b: Matrix, process_noise: &[f64]) -> Process
         process_noise: matrix(states, states, process_noise),
         measurement_noise: matrix(1, 1, &[1.0]),
         input_delay: Duration::ZERO,
+        input_jitter: Duration::ZERO,
         inputs: Vec::new(),
     }
 }
@@ -183,6 +184,31 @@ fn an_input_acts_after_its_delay() {
             output = 0.8 * output + 0.2 * inputs[0];
         }
         assert_eq!(symptoms == 0, is_right, "{delay_ms} ms: {symptoms}");
+    }
+}
+
+#[test]
+fn a_residual_is_excused_as_far_as_jitter_explains_it() {
+    // The process sees each step one sample later than the model.
+    for (jitter_ms, is_excused) in [(0, false), (10, false), (20, true)] {
+        let mut model = lag();
+        model.input_jitter = Duration::from_millis(jitter_ms);
+        let mut monitor =
+            Monitor::new(&model, &rule(DecisionRule::Window, 20, 0.02)).expect("a good rule");
+        let (mut output, mut last) = (0.0, 0.0);
+        let mut symptoms = 0;
+        for sample in 0..200 {
+            let input = if sample % 100 < 50 { 0.0 } else { 1.0 };
+            symptoms += usize::from(is_symptom(&monitor.step(at(sample), &[input], &[output])));
+            output = 0.8 * output + 0.2 * last;
+            last = input;
+        }
+        assert_eq!(symptoms == 0, is_excused, "{jitter_ms} ms: {symptoms}");
+        // A sensor that is off while nothing moves has no excuse.
+        for sample in 200..300 {
+            let finding = monitor.step(at(sample), &[0.0], &[0.05]);
+            assert!(sample < 260 || is_symptom(&finding));
+        }
     }
 }
 
