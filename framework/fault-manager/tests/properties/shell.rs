@@ -258,9 +258,8 @@ impl Shell {
     }
 
     fn awaiting(&self) -> Option<usize> {
-        self.facts
-            .iter()
-            .position(|fact| fact.awaits_first_cycle && fact.down == Level::Up)
+        let awaits = |fact: &Fact| fact.awaits_first_cycle && fact.down == Level::Up;
+        self.facts.iter().position(awaits)
     }
 
     /// Makes an observation and checks what comes of it.
