@@ -27,7 +27,7 @@ use crate::lane::{Crew, Lane, remaining};
 use crate::schedule::BusyTime;
 use crate::status::ComponentStatus;
 use crate::summary::{ApplicationSummary, ComponentSummary, Summary, application_state};
-use crate::supervision::{ManagerThreads, Observations, Supervisor};
+use crate::supervision::{ManagerThreads, Observations, Scenes, Supervisor};
 use crate::world::World;
 
 pub use agenda::Failure;
@@ -102,6 +102,15 @@ pub enum StartError {
         /// Instance name.
         component: String,
     },
+    /// A rule asks for checkpoints of components that register no memory.
+    #[error(
+        "{} registered no memory (`critical`) by the end of onStart, so there is nothing to back up\n  help: take <backup> out of the rules of {}, or let the component register its state",
+        list_names(.components), list_names(.components)
+    )]
+    NothingToBackUp {
+        /// Instance names.
+        components: Vec<String>,
+    },
     /// The event file cannot be written.
     #[error("{} cannot be written: {error}", .path.display())]
     Output {
@@ -113,6 +122,11 @@ pub enum StartError {
     /// The system refused threads or files.
     #[error("the container cannot run: {0}")]
     System(#[from] std::io::Error),
+}
+
+fn list_names(names: &[String]) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("'{name}'")).collect();
+    quoted.join(", ")
 }
 
 fn list(problems: &[AssemblyProblem]) -> String {
@@ -166,6 +180,7 @@ impl System {
             events,
             devices: Devices::new(world.clone()),
             observations: Observations::default(),
+            scenes: Scenes::default(),
             injections: Injections::default(),
             world: world.clone(),
             busy: BusyTime::default(),

@@ -127,22 +127,28 @@ impl FaultManager {
         self.explain(id)
     }
 
-    /// The fault of something upstream that explains this one: the nearest, and of those the oldest.
+    /// The fault of something upstream that explains this one: the nearest, and of those one that is
+    /// not over before one that is, and the oldest.
     fn explain(&self, id: FaultId) -> Option<FaultId> {
         let fault = self.history.get(id)?;
         let suspects = self.suspects(fault.runs);
         if suspects.is_empty() {
             return None;
         }
+        let is_over = |root: FaultId| {
+            let state = self.history.get(root).map(|fault| fault.verdict.state);
+            state != Some(FaultState::Confirmed)
+        };
         let port = self.input_port(fault.component, &self.detectors.all[fault.detector.0].kind);
         let upstream = self.graph.upstream(fault.component, port);
         for steps in upstream.chunk_by(|one, other| one.0 == other.0) {
             let near = |component: usize| steps.iter().any(|(_, step)| *step == component);
             let roots = suspects
                 .iter()
-                .filter(|(component, root)| near(*component) && *root != id);
-            if let Some(oldest) = roots.map(|(_, root)| *root).min() {
-                return Some(oldest);
+                .filter(|(component, root)| near(*component) && *root != id)
+                .map(|(_, root)| *root);
+            if let Some(root) = roots.min_by_key(|root| (is_over(*root), *root)) {
+                return Some(root);
             }
         }
         None
