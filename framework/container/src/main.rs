@@ -8,6 +8,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use commands::bench::{self, BenchArguments};
 use commands::check::{self, CheckArguments};
 use commands::run::{self, RunArguments};
 
@@ -25,6 +26,8 @@ enum Command {
     Check(CheckArguments),
     /// Run an application.
     Run(RunArguments),
+    /// Measure how good Steadfast is at what it does.
+    Bench(BenchArguments),
     /// Load a library and say by the exit code whether that works.
     #[command(hide = true)]
     ProbeLibrary {
@@ -37,6 +40,7 @@ fn main() -> ExitCode {
     match Arguments::parse().command {
         Command::Check(arguments) => check::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
         Command::ProbeLibrary { path } => container::library::probe_main(&path),
     }
 }
