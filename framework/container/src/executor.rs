@@ -8,6 +8,7 @@ use fault_manager::ActionId;
 use system_model::specification::{ExecutionKind, SchedulingPolicy};
 
 use crate::component::ComponentCell;
+use crate::guard::CallLimit;
 use crate::lane::Lane;
 use crate::supervision::{Orders, Supervisor, obedience};
 use crate::wake::Wake;
@@ -113,6 +114,7 @@ impl Executor {
     #[cold]
     pub fn obey(&mut self, supervisor: &Supervisor, lane: &Lane) {
         while let Some(order) = self.orders.take() {
+            self.orders.hurry(CallLimit::NONE);
             let member = self
                 .members
                 .iter()

@@ -257,6 +257,12 @@ impl Simulated {
             self.obeying = Some(index);
             self.executors[index].obey(&self.supervisor, lane);
             self.obeying = None;
+            // What kept it busy is over: it goes on with its period.
+            let executor = &self.executors[index];
+            let now_ns = self.environment.clock.now_ns();
+            let end_ns = now_ns + self.environment.busy.take_ns();
+            let next_ns = end_ns + nanoseconds(executor.period);
+            self.due_ns[index] = self.due_ns[index].min(next_ns);
         }
     }
 

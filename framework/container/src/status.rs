@@ -18,6 +18,8 @@ pub struct ComponentStatus {
     last_fault: Mutex<Option<String>>,
     /// Of an instance that stands by, and is not seen.
     standby: bool,
+    /// Until when it is in a callback that hangs, in nanoseconds of a simulated clock.
+    hangs_until_ns: AtomicU64,
 }
 
 const STATES: [LifeCycleState; 6] = [
@@ -41,6 +43,7 @@ impl ComponentStatus {
             faults: AtomicU64::new(0),
             last_fault: Mutex::new(None),
             standby: false,
+            hangs_until_ns: AtomicU64::new(0),
         }
     }
 
@@ -71,6 +74,16 @@ impl ComponentStatus {
     /// Which instance of this component it is, counted from 1.
     pub fn incarnation(&self) -> u32 {
         self.incarnation.load(Ordering::Relaxed)
+    }
+
+    /// Whether it is in a callback that hangs, at this time of a simulated clock: nobody can know
+    /// yet.
+    pub(crate) fn hangs_at(&self, now_ns: u64) -> bool {
+        now_ns < self.hangs_until_ns.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn set_hanging_until(&self, until_ns: u64) {
+        self.hangs_until_ns.store(until_ns, Ordering::Relaxed);
     }
 
     pub(crate) fn set_incarnation(&self, incarnation: u32) {

@@ -29,7 +29,7 @@ use crate::library::PortDescription;
 use crate::schedule::BusyTime;
 use crate::status::ComponentStatus;
 use crate::summary::{ApplicationSummary, ComponentSummary, Summary, application_state};
-use crate::supervision::{ManagerThreads, Observations, Supervisor};
+use crate::supervision::{ManagerThreads, Observations, Scenes, Supervisor};
 use crate::world::World;
 
 pub use agenda::Failure;
@@ -169,6 +169,7 @@ impl System {
             events,
             devices: Devices::new(world.clone()),
             observations: Observations::default(),
+            scenes: Scenes::default(),
             injections: Injections::default(),
             world: world.clone(),
             busy: BusyTime::default(),

@@ -45,14 +45,6 @@ pub(crate) enum Level {
     Destroyed,
 }
 
-/// What is down.
-#[derive(Debug, Clone)]
-pub(crate) struct Outage {
-    pub components: Vec<Level>,
-    /// Applications that were stopped as a whole.
-    pub applications: Vec<bool>,
-}
-
 /// Why a component must come down too.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Demand {
@@ -144,8 +136,9 @@ impl Graph {
         });
     }
 
-    /// What must come down because of an outage, transitively; the outage grows by it.
-    pub fn spread(&self, outage: &mut Outage) -> BTreeMap<usize, Demand> {
+    /// What must come down because of what is down, transitively; `levels` of the components grow by
+    /// it.
+    pub fn spread(&self, levels: &mut [Level]) -> BTreeMap<usize, Demand> {
         let mut demands = BTreeMap::new();
         let mut grown = true;
         while grown {
@@ -156,17 +149,13 @@ impl Graph {
                     DependencySeverity::Stop => Level::Stopped,
                     DependencySeverity::Destroy => Level::Destroyed,
                 };
-                let healthy = |node: &&Node| !self.is_down(**node, outage);
+                let healthy = |node: &&Node| !self.is_down(**node, levels);
                 if dependency.providers.iter().filter(healthy).count() >= dependency.need {
                     continue;
                 }
-                if let Node::Application(application) = dependency.dependent {
-                    grown |= !outage.applications[application];
-                    outage.applications[application] = true;
-                }
                 for member in self.members(dependency.dependent) {
-                    if outage.components[member] < level {
-                        outage.components[member] = level;
+                    if levels[member] < level {
+                        levels[member] = level;
                         let wanted = dependency.wanted.clone();
                         demands.insert(member, Demand { level, wanted });
                         grown = true;
@@ -241,14 +230,14 @@ impl Graph {
         }
     }
 
-    fn is_down(&self, node: Node, outage: &Outage) -> bool {
-        let mut down = self
-            .members(node)
-            .map(|member| outage.components[member] > Level::Up);
+    /// A component or an executor is down with any of its members, an application with all of them:
+    /// that is how it is stopped as a whole.
+    fn is_down(&self, node: Node, levels: &[Level]) -> bool {
+        let mut down = self.members(node).map(|member| levels[member] > Level::Up);
         match node {
             Node::Component(_) | Node::Executor(_) => down.any(|down| down),
             Node::Application(application) => {
-                outage.applications[application] || down.all(|down| down)
+                !self.applications[application].is_empty() && down.all(|down| down)
             }
         }
     }

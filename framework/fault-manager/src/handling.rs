@@ -200,6 +200,7 @@ impl FaultManager {
         let Some(work) = self.components[component].work.take() else {
             return;
         };
+        self.components[component].ladder.worked();
         self.action_over(work.fault);
         let owner = Cause::ConsequenceOf(work.fault);
         let healed = self.history.which(|fault| {
@@ -240,6 +241,7 @@ impl FaultManager {
             fault.component == component && !fault.runs && older
         });
         if !healed.is_empty() {
+            self.components[component].ladder.worked();
             self.come_back(component, healed);
         }
     }

@@ -13,6 +13,8 @@ use crate::system::Component;
 pub(crate) struct Ladder {
     /// When the last resets of the present instance begin, oldest first.
     resets: VecDeque<Duration>,
+    /// So many of them came since the component last worked.
+    in_vain: usize,
     /// Index of the secondary that is next.
     next_secondary: usize,
 }
@@ -46,6 +48,7 @@ impl Ladder {
             let last = self.resets.back().filter(|_| used > 0);
             let not_before = last.map_or(now, |last| last.saturating_add(rule.backoff).max(now));
             self.resets.push_back(not_before);
+            self.in_vain += 1;
             return Rung::Reset {
                 attempt: used + 1,
                 not_before,
@@ -54,7 +57,7 @@ impl Ladder {
         if self.next_secondary < component.rules.secondaries.len() {
             let secondary = self.next_secondary;
             self.next_secondary += 1;
-            self.resets.clear();
+            self.renew();
             return Rung::Replace(secondary);
         }
         Rung::Exhausted
@@ -64,12 +67,20 @@ impl Ladder {
     /// stays so.
     pub fn renew(&mut self) {
         self.resets.clear();
+        self.in_vain = 0;
     }
 
-    /// Forgets the resets that have left the window and counts the others.
+    /// The component works again: the window is about how often that is.
+    pub fn worked(&mut self) {
+        self.in_vain = 0;
+    }
+
+    /// Forgets the resets that have left the window and counts the others. Those that were in vain
+    /// count however long ago they were: else a component that takes half the window to fail would
+    /// be reset for ever.
     fn within_window(&mut self, rule: &FaultRule, now: Duration) -> u32 {
         let left = |reset: &Duration| reset.saturating_add(rule.window) <= now;
-        while self.resets.front().is_some_and(left) {
+        while self.resets.len() > self.in_vain && self.resets.front().is_some_and(left) {
             self.resets.pop_front();
         }
         u32::try_from(self.resets.len()).unwrap_or(u32::MAX)
@@ -165,6 +176,7 @@ mod tests {
             let mut ladder = Ladder::default();
             for (at, expected) in failures {
                 let rung = ladder.climb(&component, Duration::from_millis(*at));
+                ladder.worked();
                 let reset = expected.map(|(attempt, not_before)| Rung::Reset {
                     attempt,
                     not_before: Duration::from_millis(not_before),
@@ -172,5 +184,17 @@ mod tests {
                 assert_eq!(rung, reset.unwrap_or(Rung::Exhausted), "{case}, at {at}");
             }
         }
+    }
+
+    #[test]
+    fn resets_in_vain_count_however_long_they_took() {
+        let component = component(None, 3, 1000, 0);
+        let mut ladder = Ladder::default();
+        for at in [0, 2_000, 4_000] {
+            let rung = ladder.climb(&component, Duration::from_millis(at));
+            assert!(matches!(rung, Rung::Reset { .. }), "at {at}");
+        }
+        let rung = ladder.climb(&component, Duration::from_millis(6_000));
+        assert_eq!(rung, Rung::Exhausted);
     }
 }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use crate::detectors::Detectors;
 use crate::emergency::Emergency;
-use crate::graph::{Graph, Level, Outage};
+use crate::graph::{Graph, Level};
 use crate::history::History;
 use crate::observation::{Detector, DetectorId, DetectorKind, Observation};
 use crate::plan::Effect;
@@ -25,8 +25,6 @@ pub struct FaultManager {
     pub(crate) detectors: Detectors,
     pub(crate) history: History,
     pub(crate) components: Vec<ComponentState>,
-    /// Applications that were stopped as a whole.
-    pub(crate) stopped_applications: Vec<bool>,
     pub(crate) emergency: Option<Emergency>,
     pub(crate) running: bool,
     /// The latest time that was told.
@@ -54,7 +52,6 @@ impl FaultManager {
                 .iter()
                 .map(|_| ComponentState::default())
                 .collect(),
-            stopped_applications: vec![false; system.applications.len()],
             emergency: None,
             running: false,
             now: Duration::ZERO,
@@ -144,13 +141,10 @@ impl FaultManager {
         })
     }
 
-    /// What is down at the moment.
-    pub(crate) fn outage(&self) -> Outage {
+    /// How far each component is down at the moment.
+    pub(crate) fn levels(&self) -> Vec<Level> {
         let level = |state: &ComponentState| state.down.map_or(Level::Up, |down| down.level());
-        Outage {
-            components: self.components.iter().map(level).collect(),
-            applications: self.stopped_applications.clone(),
-        }
+        self.components.iter().map(level).collect()
     }
 
     /// Puts the verdicts on record that have changed.

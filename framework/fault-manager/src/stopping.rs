@@ -36,7 +36,6 @@ impl FaultManager {
                     down.is_none_or(|down| down.condition == Condition::Lost)
                 }));
                 let sentence = wording::application(&stopped.name);
-                self.stopped_applications[application] = true;
                 self.plan(id, sentence);
             }
         }
@@ -60,7 +59,7 @@ impl FaultManager {
         let Some(down) = self.components[component].down.take() else {
             return;
         };
-        self.stopped_applications[self.system.components[component].application] = false;
+        self.components[component].ladder.worked();
         let healed = self.history.which(|fault| {
             fault.component == component && fault.verdict.state == FaultState::Confirmed
         });
@@ -70,13 +69,11 @@ impl FaultManager {
 
     /// Stops these components and everything that lacks what it needs.
     fn bring_down(&mut self, id: FaultId, chosen: &BTreeSet<usize>) {
-        let mut outage = self.outage();
+        let mut levels = self.levels();
         for component in chosen {
-            let level = &mut outage.components[*component];
-            *level = (*level).max(Level::Stopped);
+            levels[*component] = levels[*component].max(Level::Stopped);
         }
-        let demands = self.graph.spread(&mut outage);
-        self.stopped_applications = outage.applications;
+        let demands = self.graph.spread(&mut levels);
         let all = chosen.iter().chain(demands.keys()).copied().collect();
         for component in self.graph.stop_order(&all) {
             self.bring_one_down(id, component, &demands);

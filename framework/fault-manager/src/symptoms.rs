@@ -1,7 +1,7 @@
 //! From symptoms to faults: arming, the queue during a recovery, the debounce, and how faults heal
 //! and are over.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
 
 use system_model::rules::{Arming, ComponentSeverity};
@@ -10,6 +10,8 @@ use crate::correlation::CORRELATION_WINDOW;
 use crate::life::{Fault, Wait};
 use crate::manager::FaultManager;
 use crate::observation::{DetectorId, DetectorKind, Symptom};
+use crate::plan::ActionId;
+use crate::state::ComponentState;
 use crate::verdict::{Cause, FaultId, FaultState};
 
 /// A fault that has healed is over when nothing has been heard of it for so long. As long as it can
@@ -132,7 +134,7 @@ impl FaultManager {
             }
             return;
         }
-        if fault.is_being_handled() || state.down.is_some() || state.recovery().is_some() {
+        if fault.waits.is_some() || state.down.is_some() || state.recovery().is_some() {
             return;
         }
         match (cause, severity) {
@@ -246,9 +248,19 @@ impl FaultManager {
 
     /// What time alone changes: overdue actions, debounces and quiet times that are over.
     pub(crate) fn elapse(&mut self, reached: impl Fn(Duration) -> bool) {
-        for component in 0..self.components.len() {
+        let late = |state: &ComponentState| {
+            let work = state.work.as_ref();
+            work.filter(|work| reached(work.deadline))
+                .map(|work| work.id)
+        };
+        let states = self.components.iter().enumerate();
+        let overdue: BTreeMap<usize, ActionId> = states
+            .filter_map(|(component, state)| Some((component, late(state)?)))
+            .collect();
+        for component in self.graph.stop_order(&overdue.keys().copied().collect()) {
+            // What one of them entails may have ended the action of another.
             let work = self.components[component].work.as_ref();
-            if work.is_some_and(|work| reached(work.deadline)) {
+            if work.is_some_and(|work| Some(&work.id) == overdue.get(&component)) {
                 self.overdue(component);
             }
         }

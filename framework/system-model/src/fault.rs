@@ -135,6 +135,4 @@ pub struct SignalEvidence {
     /// `si_addr`: the address that could not be accessed, or the faulting instruction. It differs
     /// from run to run.
     pub address: usize,
-    /// Where in the component it was, innermost first, as far as its library tells.
-    pub backtrace: Vec<String>,
 }

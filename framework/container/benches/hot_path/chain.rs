@@ -18,7 +18,7 @@ use container::lane::{Crew, Lane, Work};
 use container::port::connection;
 use container::schedule::BusyTime;
 use container::status::ComponentStatus;
-use container::supervision::Observations;
+use container::supervision::{Observations, Scenes};
 use container::wake::Wake;
 use criterion::Criterion;
 use system_model::life_cycle::Operation;
@@ -108,6 +108,7 @@ fn time_cycles(length: usize, count: u64) -> Duration {
         events,
         devices: Devices::default(),
         observations: Observations::default(),
+        scenes: Scenes::default(),
         injections: Injections::default(),
         world: None,
         busy: BusyTime::default(),

@@ -61,6 +61,8 @@ impl Component {
         if environment.clock.is_simulated() {
             let limit = self.nominal.of(called);
             environment.busy.add(limit);
+            let until_ns = environment.clock.now_ns() + nanoseconds(limit);
+            self.status.set_hanging_until(until_ns);
             fault.message = hang_message(limit);
             fault.lasted = limit;
         }
@@ -82,6 +84,17 @@ impl Component {
             return;
         };
         let environment = self.services.environment();
+        let simulated = environment.clock.is_simulated();
+        let backtrace = match self.scene.take() {
+            // There time waits for it.
+            Some(scene) if simulated => scene.backtrace(),
+            Some(scene) => {
+                let incarnation = self.services.incarnation();
+                environment.scenes.leave(&self.name, incarnation, scene);
+                Vec::new()
+            }
+            None => Vec::new(),
+        };
         let now = environment.clock.now();
         let symptom = Symptom {
             detector: match fault.kind {
@@ -91,17 +104,17 @@ impl Component {
             incarnation: self.services.incarnation(),
             kind: fault.kind,
             return_code: fault.return_code,
-            at: if environment.clock.is_simulated() {
+            at: if simulated {
                 now
             } else {
                 now.saturating_sub(fault.lasted)
             },
             runs: self.is_active(),
-            evidence: exception(fault, environment.clock.is_simulated()),
+            evidence: exception(fault, backtrace, simulated),
         };
         let observation = Observation::Symptom(Box::new(symptom));
         let observations = &environment.observations;
-        if environment.clock.is_simulated() && !fault.lasted.is_zero() {
+        if simulated && !fault.lasted.is_zero() {
             let seen_ns = environment.clock.now_ns() + nanoseconds(fault.lasted);
             observations.report_at(seen_ns, observation);
         } else {
@@ -118,7 +131,7 @@ impl Component {
 }
 
 /// A fault as evidence. What differs from run to run is left out of simulated runs.
-pub(super) fn exception(fault: &Fault, simulated: bool) -> Evidence {
+pub(super) fn exception(fault: &Fault, backtrace: Vec<String>, simulated: bool) -> Evidence {
     let signal = fault.signal.as_ref();
     Evidence::Exception {
         callback: fault.callback.to_owned(),
@@ -131,7 +144,7 @@ pub(super) fn exception(fault: &Fault, simulated: bool) -> Evidence {
         address: signal
             .filter(|signal| !simulated || signal.address < NULL_PAGE)
             .map(|signal| format!("{:#x}", signal.address)),
-        backtrace: signal.map_or_else(Vec::new, |signal| signal.backtrace.clone()),
+        backtrace,
         thread_lost: fault.thread_lost,
     }
 }
@@ -174,7 +187,6 @@ pub(super) fn trap_fault(trap: &Trap, callback: &'static str, thread_lost: bool)
             name: signal,
             code: trap.code,
             address: trap.address,
-            backtrace: Vec::new(),
         }),
         ..Fault::new(kind, callback, message)
     }

@@ -21,7 +21,7 @@ use crate::injection::Injections;
 use crate::library::PortDescription;
 use crate::port::{Receiver, Sent};
 use crate::schedule::BusyTime;
-use crate::supervision::Observations;
+use crate::supervision::{Observations, Scenes};
 use crate::world::World;
 use fault_manager::DetectorId;
 
@@ -36,6 +36,8 @@ pub struct Environment {
     pub devices: Devices,
     /// What waits for the fault manager.
     pub observations: Observations,
+    /// Where components were when they were taken off.
+    pub scenes: Scenes,
     /// Faults that are made on purpose.
     pub injections: Injections,
     /// The simulated world, if there is one.

@@ -82,6 +82,8 @@ pub struct Watch {
     condemned: AtomicU64,
     /// How often a condemned callback was met where it cannot be taken off.
     refusals: AtomicU32,
+    /// A limit for every callback while somebody waits for the lane; 0: nobody does.
+    hurry: AtomicU32,
 }
 
 const CONDEMNED: u64 = 1 << 32;
@@ -106,7 +108,19 @@ impl Watch {
 
     /// What the thread is in now.
     pub fn inside(&self) -> Inside {
-        Inside::from_word(self.inside.load(Ordering::Relaxed))
+        let mut inside = Inside::from_word(self.inside.load(Ordering::Relaxed));
+        let hurry = self.hurry.load(Ordering::Relaxed);
+        if hurry > 0 && inside.limit > CallLimit(hurry) {
+            inside.limit = CallLimit(hurry);
+        }
+        inside
+    }
+
+    /// From now on no callback may take longer than this: the fault manager waits for the lane,
+    /// because one of its components has not worked for at least that long. [`CallLimit::NONE`]
+    /// takes that back.
+    pub fn hurry(&self, limit: CallLimit) {
+        self.hurry.store(limit.0, Ordering::Relaxed);
     }
 
     /// Lets the handler break this generation off; called by the watchdog.
@@ -202,6 +216,18 @@ mod tests {
         let next = watch.enter(limit(3));
         assert_eq!(seen(), (3, 1, limit(3)), "no generation comes twice");
         watch.leave(next);
+    }
+
+    #[test]
+    fn somebody_who_waits_shortens_the_limit() {
+        let watch = Watch::default();
+        let limit = |ms| CallLimit::from(Duration::from_millis(ms));
+        let inside = watch.enter(limit(30));
+        for (hurry, expected) in [(50, 30), (20, 20), (0, 30)] {
+            watch.hurry(limit(hurry));
+            assert_eq!(watch.inside().limit, limit(expected), "{hurry} ms");
+        }
+        watch.leave(inside);
     }
 
     #[test]

@@ -81,11 +81,12 @@ impl Subject {
     }
 
     /// Whether the component runs, and is the one that was looked at last.
-    fn goes_on(&mut self) -> bool {
+    fn goes_on(&mut self, now: Duration) -> bool {
         let incarnation = self.status.incarnation();
         let same = incarnation == self.incarnation;
         self.incarnation = incarnation;
-        same && self.status.state() == LifeCycleState::Active
+        let now_ns = super::nanoseconds(now);
+        same && (self.status.state() == LifeCycleState::Active || self.status.hangs_at(now_ns))
     }
 
     fn report(
@@ -129,11 +130,11 @@ impl Monitors {
 
     /// Looks at everything, if it is time.
     pub fn look(&mut self, now: Duration, observations: &Observations) {
-        let now_ns = super::supervisor::nanoseconds(now);
+        let now_ns = super::nanoseconds(now);
         if now_ns < self.due_ns {
             return;
         }
-        let period_ns = super::supervisor::nanoseconds(LOOK_PERIOD);
+        let period_ns = super::nanoseconds(LOOK_PERIOD);
         // On the grid of the period: in simulated time every run looks at the same moments.
         self.due_ns = (now_ns / period_ns + 1) * period_ns;
         for input in &mut self.inputs {
@@ -153,7 +154,7 @@ impl Monitors {
 
 impl InputAge {
     fn look(&mut self, now: Duration, observations: &Observations) {
-        if !self.subject.goes_on() {
+        if !self.subject.goes_on(now) {
             self.freshness.disarm();
             return;
         }
@@ -180,7 +181,7 @@ impl InputAge {
 impl WorkDone {
     fn look(&mut self, now: Duration, observations: &Observations) {
         let completed = self.subject.status.cycles();
-        if !self.subject.goes_on() {
+        if !self.subject.goes_on(now) {
             self.heartbeat.disarm(completed);
             return;
         }
@@ -203,7 +204,7 @@ impl WorkDone {
 
 impl OverrunCount {
     fn look(&mut self, now: Duration, observations: &Observations) {
-        if !self.subject.goes_on() {
+        if !self.subject.goes_on(now) {
             return;
         }
         let overruns = self.subject.status.overruns();

@@ -61,15 +61,17 @@ impl Observations {
         self.later().iter().map(|(time_ns, _)| *time_ns).min()
     }
 
-    /// Makes those whose time has come.
-    pub fn mature(&self, now_ns: u64) {
+    /// Makes those whose time has come and that still `hold`.
+    pub fn mature(&self, now_ns: u64, holds: impl Fn(&Observation) -> bool) {
         let mut later = self.later();
         let (due, rest) = later.drain(..).partition(|(time_ns, _)| *time_ns <= now_ns);
         *later = rest;
         drop(later);
         let due: Vec<(u64, Observation)> = due;
         for (_, observation) in due {
-            self.report(observation);
+            if holds(&observation) {
+                self.report(observation);
+            }
         }
     }
 

@@ -1,11 +1,13 @@
 //! What the fault manager asks of an executor: done between two steps, on the executor's own
 //! thread, so that nobody else is ever inside a component.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crossbeam::queue::ArrayQueue;
 use fault_manager::ActionId;
 
+use crate::guard::CallLimit;
+use crate::lane::Lane;
 use crate::wake::Wake;
 
 /// Orders that may wait for one executor: one for each component that it runs, and the emergency
@@ -14,10 +16,11 @@ use crate::wake::Wake;
 const QUEUE: usize = 256;
 
 /// The orders of one executor.
-#[derive(Debug)]
 pub struct Orders {
     queue: ArrayQueue<Order>,
     wake: Arc<Wake>,
+    /// Who takes the orders, once it runs.
+    lane: OnceLock<Arc<Lane>>,
 }
 
 /// One order.
@@ -70,6 +73,20 @@ impl Orders {
         Self {
             queue: ArrayQueue::new(QUEUE),
             wake,
+            lane: OnceLock::new(),
+        }
+    }
+
+    /// Names the lane that takes the orders; the first one named counts.
+    pub fn attach(&self, lane: &Arc<Lane>) {
+        let _first_one_counts = self.lane.set(Arc::clone(lane));
+    }
+
+    /// Whoever takes the orders is in no callback longer than this until the next order is taken;
+    /// [`CallLimit::NONE`] takes that back.
+    pub fn hurry(&self, limit: CallLimit) {
+        if let Some(lane) = self.lane.get() {
+            lane.loss().watch().hurry(limit);
         }
     }
 

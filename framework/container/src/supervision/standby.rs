@@ -16,6 +16,8 @@ use crate::status::ComponentStatus;
 pub struct Standbys {
     factory: Arc<Factory>,
     ready: Mutex<Vec<Standby>>,
+    /// A copy of the component's own library is kept loaded as well, for a reset.
+    keeps_own: bool,
 }
 
 struct Standby {
@@ -24,11 +26,13 @@ struct Standby {
 }
 
 impl Standbys {
-    /// None yet.
-    pub fn new(factory: Arc<Factory>) -> Self {
+    /// None yet. `keeps_own`: a copy of the component's own library shall be kept loaded for a
+    /// reset, because loading takes longer than all the rest of it.
+    pub fn new(factory: Arc<Factory>, keeps_own: bool) -> Self {
         Self {
             factory,
             ready: Mutex::default(),
+            keeps_own,
         }
     }
 
@@ -42,7 +46,9 @@ impl Standbys {
         let ready = self.ready();
         let variants = self.factory.variants().iter().enumerate();
         variants
-            .filter(|(_, variant)| variant.preload != Preload::Cold)
+            .filter(|(index, variant)| {
+                variant.preload != Preload::Cold || (*index == 0 && self.keeps_own)
+            })
             .map(|(index, _)| index)
             .filter(|index| !ready.iter().any(|standby| standby.variant == *index))
             .collect()
@@ -54,15 +60,18 @@ impl Standbys {
     /// Why not; then it is made when it is needed.
     pub fn prepare(&self, variant: usize, loss: &Loss) -> Result<(), String> {
         let mut component = self.make(variant)?;
-        component
-            .construct(loss)
-            .map_err(|error| words("create", &error))?;
-        if self.factory.variants()[variant].preload == Preload::Warm {
+        let preload = self.factory.variants()[variant].preload;
+        if preload != Preload::Cold {
+            component
+                .construct(loss)
+                .map_err(|error| words("create", &error))?;
+            component.set_constructed();
+        }
+        if preload == Preload::Warm {
             component
                 .operate(Operation::Initialize, loss)
                 .map_err(|error| words("onInitialize", &error))?;
         }
-        component.set_constructed();
         self.ready().push(Standby { variant, component });
         Ok(())
     }
@@ -75,7 +84,8 @@ impl Standbys {
             let component = ready.swap_remove(found).component;
             let readiness = match component.state() {
                 LifeCycleState::Ready => "by a warm standby",
-                _ => "by a loaded standby",
+                _ if component.is_constructed() => "by a loaded standby",
+                _ => "by a fresh instance of a loaded copy",
             };
             return Ok((component, readiness));
         }

@@ -10,7 +10,8 @@ use std::time::{Duration, Instant};
 
 use crossbeam::channel::{Receiver, Sender, bounded};
 use fault_manager::{
-    Action, ActionId, ActionOutcome, Effect, FaultManager, Observation, PlannedAction, Verdict,
+    Action, ActionId, ActionOutcome, Effect, Evidence, FaultManager, Observation, PlannedAction,
+    Verdict,
 };
 
 use super::emergency::Emergency;
@@ -20,6 +21,7 @@ use super::{LOOK_PERIOD, Monitors};
 use crate::component::Environment;
 use crate::event_log::Event;
 use crate::guard::loss::Loss;
+use crate::status::ComponentStatus;
 use crate::wake::Wake;
 
 /// Verdicts whose decision was timed; older ones are not recorded any more.
@@ -32,6 +34,7 @@ pub struct Supervisor {
     /// By component: who runs it.
     orders: Vec<Arc<Orders>>,
     standbys: Vec<Standbys>,
+    statuses: Vec<Arc<ComponentStatus>>,
     emergency: Emergency,
     monitors: Mutex<Monitors>,
     /// Wakes the thread that looks after time.
@@ -57,6 +60,7 @@ impl Supervisor {
         manager: FaultManager,
         orders: Vec<Arc<Orders>>,
         standbys: Vec<Standbys>,
+        statuses: Vec<Arc<ComponentStatus>>,
         emergency: Emergency,
         monitors: Monitors,
     ) -> (Self, Receiver<usize>) {
@@ -70,6 +74,7 @@ impl Supervisor {
             }),
             orders,
             standbys,
+            statuses,
             emergency,
             monitors: Mutex::new(monitors),
             wake: Wake::default(),
@@ -134,7 +139,9 @@ impl Supervisor {
     /// What time brings: orders that are due, deadlines of the fault manager.
     pub fn tick(&self) {
         let now_ns = self.environment.clock.now_ns();
-        self.environment.observations.mature(now_ns);
+        self.environment
+            .observations
+            .mature(now_ns, |observation| self.is_of_now(observation));
         self.inject(now_ns);
         self.monitors
             .lock()
@@ -199,12 +206,45 @@ impl Supervisor {
 
     /// The verdicts on record, oldest first.
     pub fn verdicts(&self) -> Vec<Verdict> {
-        self.lock().manager.verdicts().cloned().collect()
+        let mut verdicts: Vec<Verdict> = self.lock().manager.verdicts().cloned().collect();
+        for verdict in &mut verdicts {
+            self.environment.scenes.complete(verdict);
+        }
+        verdicts
+    }
+
+    /// Finds the backtrace of a component that was taken off, if one waits for that, and puts the
+    /// verdict on record again with it; whether there was one.
+    pub(super) fn find_backtrace(&self) -> bool {
+        let Some((component, incarnation)) = self.environment.scenes.look_at_one() else {
+            return false;
+        };
+        let mut core = self.lock();
+        let verdicts = core.manager.verdicts();
+        let of_it = verdicts
+            .filter(|it| (it.component == component) && it.incarnation == incarnation)
+            .last()
+            .cloned();
+        if let Some(verdict) = of_it {
+            self.record(&mut core, verdict, Duration::ZERO);
+        }
+        true
     }
 
     /// Whether the emergency stop is latched.
     pub fn is_emergency(&self) -> bool {
         self.lock().manager.is_emergency()
+    }
+
+    /// Whether an observation is about an instance that is still there.
+    fn is_of_now(&self, observation: &Observation) -> bool {
+        let Observation::Symptom(symptom) = observation else {
+            return true;
+        };
+        let core = self.lock();
+        let detector = core.manager.detectors().get(symptom.detector.0);
+        let status = detector.and_then(|detector| self.statuses.get(detector.component));
+        status.is_some_and(|status| status.incarnation() == symptom.incarnation)
     }
 
     /// Faults that begin and end with time.
@@ -291,6 +331,9 @@ impl Supervisor {
             Action::Stop { component } => (*component, Task::Stop),
             Action::Destroy { component } => (*component, Task::Destroy),
         };
+        if let Some(limit) = hurry(&core.manager, planned) {
+            self.orders[component].hurry(limit.into());
+        }
         let order = Order {
             action: Some(planned.id),
             component,
@@ -362,6 +405,7 @@ impl Supervisor {
             }
             core.decisions.push((verdict.id.0, took));
         }
+        self.environment.scenes.complete(&mut verdict);
         verdict.decision_us += u64::try_from(decision.as_micros()).unwrap_or(u64::MAX);
         self.environment.events.record(
             self.environment.clock.now_ns(),
@@ -371,6 +415,17 @@ impl Supervisor {
 
     fn lock(&self) -> MutexGuard<'_, Core> {
         self.core.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// A component that has missed its heartbeats may be hanging long before its deadline: how long a
+/// callback of its executor may take while the order waits.
+fn hurry(manager: &FaultManager, planned: &PlannedAction) -> Option<Duration> {
+    let mut verdicts = manager.verdicts();
+    let verdict = verdicts.find(|verdict| verdict.id == planned.fault)?;
+    match verdict.evidence {
+        Evidence::Heartbeat { period_ms, .. } => Some(Duration::from_secs_f64(period_ms / 1e3)),
+        _ => None,
     }
 }
 

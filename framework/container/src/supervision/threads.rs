@@ -1,5 +1,5 @@
-//! The fault manager's threads where time is real: one that looks after time, and a lane on which
-//! standbys are prepared, because that runs code of components.
+//! The fault manager's threads where time is real: one that looks after time, one that reads
+//! backtraces, and a lane on which standbys are prepared, because that runs code of components.
 
 use std::io;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use crate::lane::{Crew, Lane, Work};
 /// The longest sleep of the thread that looks after time, so that it notices its end.
 const LONGEST_SLEEP: Duration = Duration::from_millis(100);
 
-/// How often the lane that prepares standbys looks whether it is to end.
+/// How often those that wait for work look for it, and whether they are to end.
 const LOOK_PERIOD: Duration = Duration::from_millis(100);
 
 /// The threads, once started.
@@ -25,6 +25,7 @@ const LOOK_PERIOD: Duration = Duration::from_millis(100);
 pub struct ManagerThreads {
     stopping: Arc<AtomicBool>,
     clock: Option<JoinHandle<()>>,
+    backtraces: Option<JoinHandle<()>>,
     preparation: Option<Arc<Lane>>,
 }
 
@@ -44,6 +45,11 @@ impl ManagerThreads {
             .name("fault-manager".to_owned())
             .spawn(move || look_after_time(&clocked, &stopping))?;
         self.clock = Some(thread);
+        let (stopping, reader) = (Arc::clone(&self.stopping), Arc::clone(supervisor));
+        let thread = std::thread::Builder::new()
+            .name("backtraces".to_owned())
+            .spawn(move || find_backtraces(&reader, &stopping))?;
+        self.backtraces = Some(thread);
         let work = Preparation {
             supervisor: Arc::clone(supervisor),
             wanted,
@@ -58,8 +64,11 @@ impl ManagerThreads {
     pub fn stop(&mut self, supervisor: &Supervisor) {
         self.stopping.store(true, Ordering::Release);
         supervisor.rouse();
-        if let Some(thread) = self.clock.take() {
-            // It ends within one tick; a panic in it has been printed.
+        for thread in [self.clock.take(), self.backtraces.take()]
+            .into_iter()
+            .flatten()
+        {
+            // It ends within one look; a panic in it has been printed.
             let _panicked = thread.join();
         }
         if let Some(lane) = self.preparation.take() {
@@ -77,6 +86,16 @@ fn look_after_time(supervisor: &Supervisor, stopping: &AtomicBool) {
         let sleep = Duration::from_nanos(due_ns.saturating_sub(now_ns));
         supervisor.sleep(sleep.min(LONGEST_SLEEP));
     }
+}
+
+fn find_backtraces(supervisor: &Supervisor, stopping: &AtomicBool) {
+    while !stopping.load(Ordering::Acquire) {
+        if !supervisor.find_backtrace() {
+            std::thread::sleep(LOOK_PERIOD);
+        }
+    }
+    // Those that are left belong to verdicts on record.
+    while supervisor.find_backtrace() {}
 }
 
 /// Prepares standbys in place of those that were used.

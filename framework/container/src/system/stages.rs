@@ -160,6 +160,7 @@ impl System {
     fn launch_executor(&mut self, executor: Executor) -> Result<(), StartError> {
         let prepare = real_time::preparation(&executor, Arc::clone(&self.environment));
         let name = executor.name.clone();
+        let orders = Arc::clone(&executor.orders);
         let members = executor
             .members
             .iter()
@@ -171,6 +172,7 @@ impl System {
             Arc::clone(&self.supervisor),
         );
         let lane = Lane::new(name, Box::new(work));
+        orders.attach(&lane);
         self.crew.start(&lane, prepare)?;
         self.lanes.push((lane, members));
         Ok(())

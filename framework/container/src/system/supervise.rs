@@ -71,16 +71,19 @@ pub(super) fn supervise(
     let orders = (0..assembly.components.len())
         .map(|index| orders_of(assembly, index))
         .collect();
+    // In simulated time loading takes none.
+    let keeps_own = !environment.clock.is_simulated();
     let standbys = assembly
         .factories
         .iter()
-        .map(|factory| Standbys::new(Arc::clone(factory)))
+        .map(|factory| Standbys::new(Arc::clone(factory), keeps_own))
         .collect();
     Ok(Supervisor::new(
         Arc::clone(environment),
         manager,
         orders,
         standbys,
+        assembly.statuses.clone(),
         emergency,
         monitors,
     ))

@@ -221,3 +221,17 @@ fn an_emergency_stop_that_failed_is_tried_again_for_the_next_fault() {
     bench.tell(Observation::Clear(None));
     assert!(bench.rearmed && bench.acts.is_empty(), "both run");
 }
+
+#[test]
+fn a_crash_while_the_emergency_stop_is_under_way_is_not_lost() {
+    let mut scope = application("robot", &["driver"]);
+    scope.rules.components[0].fault = budget(0, ApplicationSeverity::Global);
+    let mut bench = Bench::new(vec![scope]);
+    bench.complain(0, &DetectorKind::Exception, FaultKind::Panic, true);
+    let stop = bench.act();
+    assert_eq!(stop.action, Action::EmergencyStop);
+    bench.crash(0);
+    assert_eq!(bench.manager.condition(0), Some(Condition::Waiting));
+    bench.done(&stop);
+    assert_eq!(bench.manager.condition(0), Some(Condition::Waiting));
+}

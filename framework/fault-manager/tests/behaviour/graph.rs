@@ -1,6 +1,6 @@
 //! Who is stopped with whom, and in which order.
 
-use fault_manager::{Action, Condition, Scope};
+use fault_manager::{Action, Condition, Observation, Scope};
 use system_model::fault::FaultKind;
 use system_model::rules::{ApplicationSeverity, ComponentSeverity, DependencySeverity, Entity};
 use system_model::specification::ExecutionKind;
@@ -260,4 +260,19 @@ fn an_operator_starts_again_what_was_stopped_but_not_what_lacks_what_it_needs() 
     assert!(bench.acts.is_empty());
     assert_eq!(bench.manager.condition(0), Some(Condition::Working));
     assert_eq!(bench.manager.condition(1), Some(Condition::Working));
+}
+
+#[test]
+fn a_stop_is_not_overdue_because_a_recovery_that_it_overtook_is() {
+    let mut scope = application("robot", &["a", "b"]);
+    for rules in &mut scope.rules.components {
+        rules.fault = budget(1, ApplicationSeverity::Local);
+    }
+    let mut bench = Bench::new(vec![scope]);
+    bench.crash(0);
+    bench.crash(1);
+    let deadline = bench.manager.due().expect("of both resets");
+    bench.now = deadline;
+    bench.tell(Observation::Tick);
+    assert_eq!(bench.actions(), [stopped(0), stopped(1)]);
 }

@@ -30,8 +30,6 @@ pub struct Overruns {
     within: Duration,
     /// Time of the first of some overruns, and how many; oldest first.
     recent: VecDeque<(Duration, u64)>,
-    /// All together.
-    count: u64,
     seen: u64,
     is_violated: bool,
 }
@@ -43,7 +41,6 @@ impl Overruns {
             tolerated: rule.tolerated,
             within: rule.within,
             recent: VecDeque::with_capacity(PARTS as usize + 2),
-            count: 0,
             seen,
             is_violated: false,
         }
@@ -59,11 +56,12 @@ impl Overruns {
         if new > 0 {
             self.remember(now, new);
         }
-        let is_violated = self.count > u64::from(self.tolerated);
+        let count = self.count();
+        let is_violated = count > u64::from(self.tolerated);
         let was_violated = std::mem::replace(&mut self.is_violated, is_violated);
         match (is_violated, was_violated) {
             (true, _) if new > 0 => Some(Finding::Violated(OverrunCount {
-                count: self.count,
+                count,
                 tolerated: self.tolerated,
                 within: self.within,
             })),
@@ -72,17 +70,20 @@ impl Overruns {
         }
     }
 
+    fn count(&self) -> u64 {
+        let counts = self.recent.iter().map(|(_, count)| *count);
+        counts.fold(0, u64::saturating_add)
+    }
+
     fn forget(&mut self, now: Duration) {
-        while let Some((at, count)) = self.recent.front()
+        while let Some((at, _)) = self.recent.front()
             && now.saturating_sub(*at) > self.within
         {
-            self.count -= count;
             self.recent.pop_front();
         }
     }
 
     fn remember(&mut self, now: Duration, new: u64) {
-        self.count = self.count.saturating_add(new);
         match self.recent.back_mut() {
             Some((at, count)) if now.saturating_sub(*at) <= self.within / PARTS => {
                 *count = count.saturating_add(new);
@@ -145,6 +146,6 @@ mod tests {
             assert_eq!(found, None);
         }
         assert_eq!(overruns.recent.capacity(), room);
-        assert!(overruns.count > 95_000, "{}", overruns.count);
+        assert!(overruns.count() > 95_000, "{}", overruns.count());
     }
 }
