@@ -122,6 +122,21 @@ fn list(problems: &[AssemblyProblem]) -> String {
     lines.join("\n")
 }
 
+fn environment(clock: ClockKind, events: EventLog, world: Option<Arc<World>>) -> Environment {
+    Environment {
+        clock: match clock {
+            ClockKind::Real => Clock::real(),
+            ClockKind::Simulated => Clock::simulated(),
+        },
+        events,
+        devices: Devices::new(world.clone()),
+        observations: Observations::default(),
+        injections: Injections::default(),
+        world,
+        busy: BusyTime::default(),
+    }
+}
+
 /// A running application.
 pub struct System {
     specification: ApplicationSpecification,
@@ -160,20 +175,7 @@ impl System {
                     error,
                 },
             )?;
-        let environment = Arc::new(Environment {
-            clock: if real {
-                Clock::real()
-            } else {
-                Clock::simulated()
-            },
-            events,
-            devices: Devices::new(world.clone()),
-            observations: Observations::default(),
-            scenes: Scenes::default(),
-            injections: Injections::default(),
-            world: world.clone(),
-            busy: BusyTime::default(),
-        });
+        let environment = Arc::new(environment(options.clock, events, world.clone()));
         let assembly = assemble(
             specification,
             &options.rules,
