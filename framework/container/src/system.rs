@@ -104,6 +104,15 @@ pub enum StartError {
         /// Instance name.
         component: String,
     },
+    /// A rule asks for checkpoints of components that register no memory.
+    #[error(
+        "{} registered no memory (`critical`) by the end of onStart, so there is nothing to back up\n  help: take <backup> out of the rules of {}, or let the component register its state",
+        list_names(.components), list_names(.components)
+    )]
+    NothingToBackUp {
+        /// Instance names.
+        components: Vec<String>,
+    },
     /// The event file cannot be written.
     #[error("{} cannot be written: {error}", .path.display())]
     Output {
@@ -115,6 +124,11 @@ pub enum StartError {
     /// The system refused threads or files.
     #[error("the container cannot run: {0}")]
     System(#[from] std::io::Error),
+}
+
+fn list_names(names: &[String]) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("'{name}'")).collect();
+    quoted.join(", ")
 }
 
 fn list(problems: &[AssemblyProblem]) -> String {

@@ -127,7 +127,8 @@ impl FaultManager {
         self.explain(id)
     }
 
-    /// The fault of something upstream that explains this one: the nearest, and of those the oldest.
+    /// The fault of something upstream that explains this one: the nearest, and of those one that is
+    /// not over before one that is, and the oldest.
     fn explain(&self, id: FaultId) -> Option<FaultId> {
         let fault = self.history.get(id)?;
         let port = self.input_port(fault.component, &self.detectors.all[fault.detector.0].kind);
@@ -136,8 +137,13 @@ impl FaultManager {
             let roots = steps
                 .iter()
                 .flat_map(|(_, component)| self.explanations(*component, fault.runs));
-            if let Some(oldest) = roots.filter(|root| *root != id).min() {
-                return Some(oldest);
+            let is_over = |root: &FaultId| {
+                let state = self.history.get(*root).map(|fault| fault.verdict.state);
+                state != Some(FaultState::Confirmed)
+            };
+            let others = roots.filter(|root| *root != id);
+            if let Some(root) = others.min_by_key(|root| (is_over(root), *root)) {
+                return Some(root);
             }
         }
         None

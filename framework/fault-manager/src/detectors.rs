@@ -3,9 +3,9 @@
 use system_model::profile::Located;
 use system_model::rules::{
     Arming, ComponentRules, ComponentSeverity, Confirmation, ExceptionClass, ExceptionRule,
-    FaultRules, HeartbeatRule, Judgement, PortRules,
+    FaultRules, HeartbeatRule, Judgement, MonitorRule, PortRules,
 };
-use system_model::specification::Place;
+use system_model::specification::{ApplicationSpecification, Place, PortDirection};
 
 use crate::observation::{Detector, DetectorId, DetectorKind, Symptom};
 use crate::system::{Component, Scope, System};
@@ -42,7 +42,7 @@ impl Detectors {
                 detectors.add_rhythm(index, members.start, &scope.rules, system);
                 detectors.add_ports(index, &system.components[index].rules);
             }
-            detectors.add_helpers(members.start, &scope.rules);
+            detectors.add_helpers(members.start, scope);
         }
         detectors
     }
@@ -159,13 +159,14 @@ impl Detectors {
         }
     }
 
-    /// Process models blame the component of their first output, voters each of their sources.
-    fn add_helpers(&mut self, first: usize, rules: &FaultRules) {
+    /// Process models blame the component at which the process begins, voters each of their sources.
+    fn add_helpers(&mut self, first: usize, scope: &Scope) {
+        let rules = &scope.rules;
         for (monitor, rule) in rules.monitors.iter().enumerate() {
-            if let Some(output) = rule.outputs.first() {
+            if let Some(component) = monitored(&scope.specification, rule) {
                 let judged = Some((rule.rule.value.judgement, &rule.rule.place));
                 let kind = DetectorKind::ProcessModel { monitor };
-                self.add(first + output.component, kind, judged);
+                self.add(first + component, kind, judged);
             }
         }
         for (voting, rule) in rules.votings.iter().enumerate() {
@@ -176,6 +177,19 @@ impl Detectors {
             }
         }
     }
+}
+
+/// The component that a process model is about: the one at which the process begins, which takes the
+/// first input; where the model gets what somebody else sends, the one of the first output.
+fn monitored(specification: &ApplicationSpecification, rule: &MonitorRule) -> Option<usize> {
+    let taker = rule.inputs.iter().find(|input| {
+        let component = specification.components.get(input.component);
+        let ports = component.map_or(&[][..], |component| &component.ports);
+        let port = ports.iter().find(|port| port.name == input.port);
+        port.is_some_and(|port| port.direction == PortDirection::Input)
+    });
+    let blamed = taker.or(rule.outputs.first())?;
+    Some(blamed.component)
 }
 
 /// The heartbeat of the application or of the node, for a component that works in periods.

@@ -68,8 +68,8 @@ pub enum DetectorKind {
     /// `fault_event`, by index in `ComponentRules::fault_events`. A component without such a rule
     /// has one for whatever it reports through its report service: `None`.
     FaultEvent(Option<usize>),
-    /// `process_model`, by index in `FaultRules::monitors`; the component is that of its first
-    /// output.
+    /// `process_model`, by index in `FaultRules::monitors`; the component is the one at which the
+    /// process begins.
     ProcessModel {
         /// Index of the monitor.
         monitor: usize,

@@ -328,7 +328,9 @@ fn refused(error: &StartError) -> Failed {
             Some(AssemblyProblem::Resources { .. }) => exit_code::SYSTEM,
             Some(AssemblyProblem::Library { .. }) | None => exit_code::LIBRARY,
         },
-        StartError::Components(_) | StartError::Hangs { .. } => exit_code::COMPONENT,
+        StartError::Components(_)
+        | StartError::Hangs { .. }
+        | StartError::NothingToBackUp { .. } => exit_code::COMPONENT,
         StartError::Output { .. } => exit_code::FILE,
         StartError::System(_) => exit_code::SYSTEM,
     };

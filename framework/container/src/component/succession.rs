@@ -153,9 +153,9 @@ impl Component {
         self.checkpoints = Some(Box::new(Checkpoints::new(period)));
     }
 
-    /// Its checkpoints, if any are taken.
-    pub fn checkpoints_mut(&mut self) -> Option<&mut Checkpoints> {
-        self.checkpoints.as_deref_mut()
+    /// Whether checkpoints shall be taken of an active component that has registered no memory.
+    pub fn keeps_checkpoints_of_nothing(&self) -> bool {
+        self.checkpoints.is_some() && self.is_active() && self.services.critical().is_none()
     }
 
     /// Copies the newest certified checkpoint that was taken before `before_ns` to the registered

@@ -14,7 +14,7 @@ use super::real_time::{self, WorldThread};
 use super::{BRING_UP_LIMIT, ClockKind, STOP_LIMIT, StartError, System};
 use crate::event_log::Event;
 use crate::executor::Executor;
-use crate::lane::{Lane, remaining};
+use crate::lane::{Lane, SETUP_TOKEN, remaining};
 use crate::schedule::{RealTime, Simulated};
 
 impl System {
@@ -50,7 +50,27 @@ impl System {
                 }
             }
         }
-        Ok(())
+        self.check_backups().inspect_err(|_| {
+            self.shut_down(STOP_LIMIT);
+            self.abandon("start_refused");
+        })
+    }
+
+    /// A backup of a component that registers no memory would never hold anything: only now that it
+    /// has been started is that known.
+    fn check_backups(&self) -> Result<(), StartError> {
+        let in_vain = self.components.iter().filter_map(|cell| {
+            let component = cell.enter(SETUP_TOKEN, Duration::ZERO)?;
+            component
+                .keeps_checkpoints_of_nothing()
+                .then(|| component.name().to_string())
+        });
+        let components: Vec<String> = in_vain.collect();
+        if components.is_empty() {
+            Ok(())
+        } else {
+            Err(StartError::NothingToBackUp { components })
+        }
     }
 
     /// Puts on record that the start came to nothing.

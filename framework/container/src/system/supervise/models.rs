@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use fault_manager::DetectorKind;
 use fault_manager::detection::process_model::{InputMap, Monitor};
 use fault_manager::detection::{NumberReader, UnknownField};
+use fault_manager::{DetectorId, DetectorKind};
 use system_model::data_type::DataType;
 use system_model::process_model::ProcessModel;
 use system_model::rules::{DecisionRule, MonitorRule, RulePort};
@@ -42,15 +42,12 @@ fn monitor(
             "name a process model's file, beside the rule file or on --search-path",
         ));
     };
-    let Some(blamed) = rule.outputs.first() else {
+    let kind = DetectorKind::ProcessModel { monitor: number };
+    let mut detectors = subjects.manager.detectors().iter().enumerate();
+    let Some((detector, blamed)) = detectors.find(|(_, detector)| detector.kind == kind) else {
         return Ok(None);
     };
-    let Some(detector) = subjects.detector(
-        blamed.component,
-        DetectorKind::ProcessModel { monitor: number },
-    ) else {
-        return Ok(None);
-    };
+    let detector = DetectorId(detector);
     let watching = Monitor::new(model, &rule.rule.value).map_err(|error| {
         problem(
             format!(
