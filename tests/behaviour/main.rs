@@ -6,6 +6,7 @@ mod bad_files;
 mod bad_libraries;
 mod c_component;
 mod clocks;
+mod control;
 mod costs;
 mod events;
 mod execution;

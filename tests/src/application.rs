@@ -10,6 +10,7 @@ use tempfile::TempDir;
 
 use crate::build::artifacts;
 use crate::member::Member;
+use crate::operator::Operator;
 use crate::outcome::Outcome;
 use crate::watchdog::{Finished, Watched, until};
 
@@ -183,8 +184,20 @@ impl Application {
             .arg(self.folder().join(EVENTS))
             .arg("--summary")
             .arg(self.folder().join(SUMMARY))
+            .env("XDG_RUNTIME_DIR", self.folder())
             .env_remove("STEADFAST_LIBRARY_PATH");
         Watched::spawn(&mut command)
+    }
+
+    /// An operator beside the run.
+    pub fn operator(&self) -> Operator {
+        Operator::new(self.folder())
+    }
+
+    /// Interrupts a run and says what became of it.
+    pub fn interrupt(&self, run: Watched) -> Outcome {
+        run.signal(Signal::INT);
+        self.outcome(run.wait(STOP_LIMIT))
     }
 
     /// What became of a run.

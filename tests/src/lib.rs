@@ -6,11 +6,13 @@
 mod application;
 mod build;
 mod member;
+mod operator;
 mod outcome;
 mod watchdog;
 
 pub use application::Application;
 pub use build::{artifacts, c_component};
 pub use member::Member;
+pub use operator::Operator;
 pub use outcome::Outcome;
 pub use watchdog::{Finished, Watched, repository, until};

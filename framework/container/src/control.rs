@@ -8,10 +8,12 @@
 pub mod client;
 mod folder;
 pub mod protocol;
+mod running;
 mod server;
 
 pub use folder::{ControlError, RunningApplication, running};
 pub use protocol::{Answer, Request};
+pub use running::RunningSystem;
 pub use server::{Limits, Server};
 
 /// A running system as an operator sees it.

@@ -5,6 +5,7 @@ mod models;
 mod monitors;
 pub(crate) mod obedience;
 mod observations;
+mod operator;
 mod orders;
 mod recovery;
 mod scenes;

@@ -20,10 +20,12 @@ use system_model::specification::ApplicationSpecification;
 use crate::assembly::{Assembly, AssemblyProblem, LibraryOptions, assemble};
 use crate::clock::Clock;
 use crate::component::{ComponentCell, Environment};
+use crate::control::RunningSystem;
 use crate::device::Devices;
 use crate::event_log::{Event, EventLog, EventWriter};
 use crate::injection::Injections;
 use crate::lane::{Crew, Lane, remaining};
+use crate::library::PortDescription;
 use crate::schedule::BusyTime;
 use crate::status::ComponentStatus;
 use crate::summary::{ApplicationSummary, ComponentSummary, Summary, application_state};
@@ -134,14 +136,30 @@ fn list(problems: &[AssemblyProblem]) -> String {
     lines.join("\n")
 }
 
+fn environment(clock: ClockKind, events: EventLog, world: Option<Arc<World>>) -> Environment {
+    Environment {
+        clock: match clock {
+            ClockKind::Real => Clock::real(),
+            ClockKind::Simulated => Clock::simulated(),
+        },
+        events,
+        devices: Devices::new(world.clone()),
+        observations: Observations::default(),
+        injections: Injections::default(),
+        world,
+        busy: BusyTime::default(),
+    }
+}
+
 /// A running application.
 pub struct System {
-    application: String,
+    specification: ApplicationSpecification,
     options: RunOptions,
     environment: Arc<Environment>,
     world: Option<Arc<World>>,
     world_thread: Option<WorldThread>,
     components: Arc<[Arc<ComponentCell>]>,
+    interfaces: Arc<[Vec<PortDescription>]>,
     statuses: Vec<Arc<ComponentStatus>>,
     crew: Arc<Crew>,
     /// Each with the numbers of the components that it runs.
@@ -171,20 +189,7 @@ impl System {
                     error,
                 },
             )?;
-        let environment = Arc::new(Environment {
-            clock: if real {
-                Clock::real()
-            } else {
-                Clock::simulated()
-            },
-            events,
-            devices: Devices::new(world.clone()),
-            observations: Observations::default(),
-            scenes: Scenes::default(),
-            injections: Injections::default(),
-            world: world.clone(),
-            busy: BusyTime::default(),
-        });
+        let environment = Arc::new(environment(options.clock, events, world.clone()));
         let assembly = assemble(
             specification,
             &options.rules,
@@ -207,16 +212,18 @@ impl System {
             components,
             statuses,
             executors,
+            interfaces,
             ..
         } = assembly;
         let mut system = Self {
-            application: specification.name.clone(),
+            specification: specification.clone(),
             options,
             environment,
             world,
             world_thread: None,
             left_behind: components.iter().map(|_| AtomicBool::new(false)).collect(),
             components: components.into(),
+            interfaces: interfaces.into(),
             statuses,
             crew: Crew::new()?,
             lanes: Vec::new(),
@@ -249,6 +256,16 @@ impl System {
     /// The fault manager's shell.
     pub fn supervisor(&self) -> &Arc<Supervisor> {
         &self.supervisor
+    }
+
+    /// What an operator may ask of it while it runs.
+    pub fn control(&self) -> RunningSystem {
+        RunningSystem {
+            specification: self.specification.clone(),
+            interfaces: Arc::clone(&self.interfaces),
+            statuses: self.statuses.clone(),
+            supervisor: Arc::clone(&self.supervisor),
+        }
     }
 
     /// The world, if there is one.
@@ -365,7 +382,7 @@ impl System {
             events_lost: self.environment.events.lost(),
         };
         Summary {
-            applications: [(self.application.clone(), application)].into(),
+            applications: [(self.specification.name.clone(), application)].into(),
             components: self
                 .statuses
                 .iter()

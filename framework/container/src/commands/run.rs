@@ -15,6 +15,7 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use container::assembly::{AssemblyProblem, LibraryOptions};
+use container::control::Server;
 use container::library::LibrarySearch;
 use container::summary::Summary;
 use container::system::{ClockKind, RunOptions, StartError, System};
@@ -146,6 +147,7 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
     let started = System::start(&specification, simulation, options);
     let system = started.map_err(|error| refused(&error))?;
     let mut watcher = Watcher::new(&specification.name, lines);
+    let server = listen(&system, &specification.name, &watcher);
     let reason = loop {
         if stop_asked.load(Ordering::Acquire) {
             break "stopped";
@@ -155,6 +157,7 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         }
         watcher.refresh(&system);
     };
+    drop(server);
     let world = system.world().cloned();
     let (summary, log_error) = system.stop(reason);
     watcher.finish();
@@ -165,6 +168,25 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         write(path, world.picture().as_bytes())?;
     }
     conclude(arguments, &summary)
+}
+
+/// Lets an operator ask and command by `steadfast fault`. The robot runs without that, too.
+fn listen(system: &System, name: &str, watcher: &Watcher) -> Option<Server> {
+    match Server::start(name, Arc::new(system.control())) {
+        Ok(server) => {
+            let path = server.path().display();
+            watcher.say(&format!(
+                "notice: 'steadfast fault' finds this run at {path}"
+            ));
+            Some(server)
+        }
+        Err(error) => {
+            watcher.say(&format!(
+                "notice: 'steadfast fault' cannot reach this run: {error}"
+            ));
+            None
+        }
+    }
 }
 
 fn conclude(arguments: &RunArguments, summary: &Summary) -> Result<(), Failed> {

@@ -251,6 +251,9 @@ pub struct InputTap {
     pub voter: Option<Box<VotedInput>>,
     /// When the datum was written that was delivered last.
     delivered_ns: u64,
+    /// The cycle that has read the safe value: once, or a component that takes all that there is
+    /// would never come to an end.
+    made_safe_ns: Option<u64>,
     /// A datum that was changed on its way, and whether it is to come once more.
     changed: Option<(Datum, bool)>,
 }
@@ -273,6 +276,7 @@ impl InputTap {
             samplers: Vec::new(),
             voter: None,
             delivered_ns: 0,
+            made_safe_ns: None,
             changed: None,
         }
     }
@@ -314,7 +318,8 @@ impl InputTap {
             });
         if is_stale || !self.gate.passes(self.delivered_ns) {
             let safe = self.safe.as_mut()?;
-            return Some((false, safe.at(at.now_ns)));
+            let again = self.made_safe_ns.replace(at.now_ns) == Some(at.now_ns);
+            return (!again).then(|| (false, safe.at(at.now_ns)));
         }
         None
     }

@@ -65,43 +65,44 @@ impl Injections {
         self.armed.load(Ordering::Relaxed)
     }
 
-    /// Adds one whose times count from `now`. A distortion of a port needs the port's number and
-    /// type.
+    /// Adds one whose times count from `now`, and returns its number. A distortion of a port needs
+    /// the port's number and type.
     ///
     /// # Errors
-    /// If there are too many, or a distortion does not fit its port.
+    /// If there are too many, or a distortion does not fit its port; then nothing is added.
     pub fn add(
         &self,
         injection: Injection,
         now: Duration,
         port: Option<(usize, &DataType)>,
-    ) -> Result<(), InjectionError> {
+    ) -> Result<usize, InjectionError> {
         let mut inner = self.inner().lock().unwrap_or_else(PoisonError::into_inner);
-        let what = injection.what.clone();
-        let number = inner.schedule.add(injection, now)?;
-        if let (
-            InjectedFault::Port {
-                component,
-                field,
-                distortion,
-                ..
-            },
-            Some((port, data_type)),
-        ) = (what, port)
-        {
-            let seed = self.seed.load(Ordering::Relaxed);
-            let distortion =
-                PortDistortion::new(data_type, field.as_deref(), distortion, seed, number)?;
-            inner.ports.push(PortInjection {
-                number,
-                component,
-                port,
-                distortion,
-            });
-        }
+        let number = inner.schedule.len();
+        let of_port = match (&injection.what, port) {
+            (
+                InjectedFault::Port {
+                    component,
+                    field,
+                    distortion,
+                    ..
+                },
+                Some((port, data_type)),
+            ) => {
+                let (seed, field) = (self.seed.load(Ordering::Relaxed), field.as_deref());
+                Some(PortInjection {
+                    number,
+                    component: *component,
+                    port,
+                    distortion: PortDistortion::new(data_type, field, *distortion, seed, number)?,
+                })
+            }
+            _ => None,
+        };
+        inner.schedule.add(injection, now)?;
+        inner.ports.extend(of_port);
         drop(inner);
         self.armed.store(true, Ordering::Release);
-        Ok(())
+        Ok(number)
     }
 
     /// It is `now`: what begins and what ends. Faults of the world are put into it and taken away.

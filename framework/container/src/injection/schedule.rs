@@ -90,7 +90,7 @@ impl Schedule {
     /// # Errors
     /// If there are [`MAX_INJECTIONS`] already.
     pub fn add(&mut self, injection: Injection, now: Duration) -> Result<usize, TooManyInjections> {
-        let number = self.entries.len();
+        let number = self.len();
         if number >= MAX_INJECTIONS {
             return Err(TooManyInjections);
         }
@@ -108,6 +108,16 @@ impl Schedule {
             injection,
         });
         Ok(number)
+    }
+
+    /// How many there are: the number of the next one.
+    pub fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
     }
 
     /// The injection of a number.

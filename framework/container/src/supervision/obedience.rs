@@ -25,6 +25,9 @@ pub fn obey(
     lane: &Lane,
 ) {
     let Some(mut component) = cell.enter(lane.token(), ENTER_LIMIT) else {
+        if let Task::Tap { .. } = order.task {
+            supervisor.notice("a fault cannot be injected: a service call is inside its component");
+        }
         end(
             order.action,
             supervisor,
@@ -89,6 +92,10 @@ fn perform(
                 .map_err(|error| words("onStart", &error)),
             _ => Ok(String::new()),
         },
+        Task::Tap { port } => {
+            component.services_mut().tap(*port);
+            Ok(String::new())
+        }
     }
 }
 

@@ -60,6 +60,11 @@ pub enum Task {
     },
     /// Start the actuator again that an emergency stop has stopped.
     Resume,
+    /// Put a tap on a data port, for an injected fault.
+    Tap {
+        /// Index of the port.
+        port: usize,
+    },
 }
 
 impl Orders {

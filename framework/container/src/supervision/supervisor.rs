@@ -93,13 +93,10 @@ impl Supervisor {
         for variant in standbys.wanting() {
             if let Err(reason) = standbys.prepare(variant, loss) {
                 let name = &standbys.factory().variants()[variant].specification;
-                let message = format!(
+                self.notice(&format!(
                     "no standby '{}' for '{}' could be prepared: {reason}",
                     name.type_name, name.name
-                );
-                self.environment
-                    .events
-                    .record(self.environment.clock.now_ns(), Event::Notice { message });
+                ));
             }
         }
     }
@@ -385,7 +382,7 @@ impl Supervisor {
         });
     }
 
-    fn give(&self, order: Order) {
+    pub(super) fn give(&self, order: Order) {
         let action = order.action;
         let orders = self.orders.get(order.component);
         let given = orders.is_some_and(|orders| orders.give(order));

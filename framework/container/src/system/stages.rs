@@ -24,7 +24,7 @@ impl System {
         self.environment.events.record(
             0,
             Event::RunStarted {
-                application: self.application.clone(),
+                application: self.specification.name.clone(),
                 clock: self.options.clock.name(),
                 seed: self.options.seed,
                 components: self.components.len(),

@@ -62,12 +62,16 @@ impl Watcher {
                 continue;
             };
             let seconds = std::time::Duration::from_nanos(t_ns).as_secs_f64();
-            let line = format!("[{seconds:10.3}] {text}");
-            match &self.table {
-                // A view that cannot be drawn is no reason to stop the robot.
-                Some(table) => drop(table.lines.println(line)),
-                None => drop(writeln!(io::stdout(), "{line}")),
-            }
+            self.say(&format!("[{seconds:10.3}] {text}"));
+        }
+    }
+
+    /// Prints a line.
+    pub(super) fn say(&self, line: &str) {
+        match &self.table {
+            // A view that cannot be drawn is no reason to stop the robot.
+            Some(table) => drop(table.lines.println(line)),
+            None => drop(writeln!(io::stdout(), "{line}")),
         }
     }
 }
