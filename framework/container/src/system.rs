@@ -145,6 +145,7 @@ fn environment(clock: ClockKind, events: EventLog, world: Option<Arc<World>>) ->
         events,
         devices: Devices::new(world.clone()),
         observations: Observations::default(),
+        scenes: Scenes::default(),
         injections: Injections::default(),
         world,
         busy: BusyTime::default(),
