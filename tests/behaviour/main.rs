@@ -18,6 +18,7 @@ mod ports;
 mod readme;
 mod recovery;
 mod reference_robot;
+mod scenarios;
 mod services;
 mod stopping;
 mod tidy;
