@@ -16,9 +16,10 @@ use system_profile::{LoadOptions, load_application};
 use tests::{Application, Member, artifacts};
 
 /// Ways to hang, and whether the thread is lost with the component.
-const WAYS: [(&str, bool); 4] = [
+const WAYS: [(&str, bool); 5] = [
     ("hangs", false),
     ("hangs_asking", false),
+    ("hangs_allocating", false),
     ("hangs_asleep", true),
     ("blocks_signals", false),
 ];
@@ -44,21 +45,29 @@ fn application(way: &str, callback: &str) -> Application {
         .connect("service", "asker.arithmetic", "faulty.arithmetic")
 }
 
-/// In simulated time nothing of the others changes: the hang takes no time of that clock.
-#[test]
-fn in_simulated_time() {
-    for (way, thread_lost) in WAYS {
-        for callback in [
+/// Where a component hangs in simulated time: each takes a second of the machine's, so only one way
+/// is tried everywhere.
+fn callbacks(way: &str) -> &'static [&'static str] {
+    match way {
+        "hangs" => &[
             "onPeriodChanged",
             "onExecute",
             "onUpdated",
             "onEvent",
             "onCall",
-            "onStop",
-        ] {
+        ],
+        _ => &["onExecute", "onCall"],
+    }
+}
+
+/// In simulated time nothing of the others changes: the hang takes no time of that clock.
+#[test]
+fn in_simulated_time() {
+    for (way, thread_lost) in WAYS {
+        for callback in callbacks(way) {
             let outcome = application(way, callback).simulate("1s").ended_well();
             let context = format!("{way} in {callback}");
-            let expected = ("hang".to_owned(), callback.to_owned());
+            let expected = ("hang".to_owned(), (*callback).to_owned());
             assert_eq!(outcome.faults("faulty"), [expected], "{context}");
             let fault = outcome.events("fault", "faulty")[0];
             assert_eq!(fault["thread_lost"], thread_lost, "{context}");
@@ -76,6 +85,32 @@ fn in_simulated_time() {
                 outcome.states("recorder"),
                 ["READY", "ACTIVE", "INACTIVE", "DESTROYED"],
                 "{context}"
+            );
+        }
+    }
+}
+
+/// Stopping goes on in order. A machine that gives the component too little time to be found out
+/// leaves it behind first.
+#[test]
+fn while_it_stops() {
+    for (way, _) in WAYS {
+        let outcome = application(way, "onStop").simulate("1s").ended_well();
+        let hang = ("hang".to_owned(), "onStop".to_owned());
+        let left_behind = outcome
+            .raw_events()
+            .contains("component 'faulty' did not return: it is left behind");
+        assert!(
+            outcome.faults("faulty") == [hang] || left_behind,
+            "{way}: {}",
+            outcome.raw_events()
+        );
+        for healthy in ["counter", "recorder"] {
+            assert_eq!(outcome.cycles(healthy), CYCLES, "{way}: {healthy}");
+            assert_eq!(
+                outcome.states(healthy),
+                ["READY", "ACTIVE", "INACTIVE", "DESTROYED"],
+                "{way}: {healthy}"
             );
         }
     }

@@ -8,6 +8,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use commands::bench::{self, BenchArguments};
 use commands::check::{self, CheckArguments};
 use commands::fault::{self, FaultArguments};
 use commands::run::{self, RunArguments};
@@ -28,6 +29,8 @@ enum Command {
     Run(RunArguments),
     /// List, show, clear and inject faults of a running application.
     Fault(FaultArguments),
+    /// Measure how good Steadfast is at what it does.
+    Bench(BenchArguments),
     /// Load a library and say by the exit code whether that works.
     #[command(hide = true)]
     ProbeLibrary {
@@ -41,6 +44,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Fault(arguments) => fault::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
         Command::ProbeLibrary { path } => container::library::probe_main(&path),
     }
 }

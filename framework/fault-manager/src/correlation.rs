@@ -131,47 +131,52 @@ impl FaultManager {
     /// not over before one that is, and the oldest.
     fn explain(&self, id: FaultId) -> Option<FaultId> {
         let fault = self.history.get(id)?;
+        let suspects = self.suspects(fault.runs);
+        if suspects.is_empty() {
+            return None;
+        }
+        let is_over = |root: FaultId| {
+            let state = self.history.get(root).map(|fault| fault.verdict.state);
+            state != Some(FaultState::Confirmed)
+        };
         let port = self.input_port(fault.component, &self.detectors.all[fault.detector.0].kind);
         let upstream = self.graph.upstream(fault.component, port);
         for steps in upstream.chunk_by(|one, other| one.0 == other.0) {
-            let roots = steps
+            let near = |component: usize| steps.iter().any(|(_, step)| *step == component);
+            let roots = suspects
                 .iter()
-                .flat_map(|(_, component)| self.explanations(*component, fault.runs));
-            let is_over = |root: &FaultId| {
-                let state = self.history.get(*root).map(|fault| fault.verdict.state);
-                state != Some(FaultState::Confirmed)
-            };
-            let others = roots.filter(|root| *root != id);
-            if let Some(root) = others.min_by_key(|root| (is_over(root), *root)) {
+                .filter(|(component, root)| near(*component) && *root != id)
+                .map(|(_, root)| *root);
+            if let Some(root) = roots.min_by_key(|root| (is_over(*root), *root)) {
                 return Some(root);
             }
         }
         None
     }
 
-    /// Root causes because of which a component may have sent nothing or nonsense. One that is in
-    /// ERROR itself is not left there because of something that was handled already.
-    fn explanations(&self, component: usize, runs: bool) -> Vec<FaultId> {
+    /// Components that may send nothing or nonsense, each with the root cause of it. A fault that has
+    /// been handled explains only those that run: one in ERROR is not left there because of it.
+    fn suspects(&self, runs: bool) -> Vec<(usize, FaultId)> {
         let now = self.now;
-        let explains = |id: &FaultId| {
-            self.history.get(*id).is_some_and(|fault| {
-                let recent = |at: Duration| runs && at.saturating_add(CORRELATION_WINDOW) > now;
+        let recent = |at: Duration| runs && at.saturating_add(CORRELATION_WINDOW) > now;
+        let explains = |root: FaultId| {
+            self.history.get(root).is_some_and(|fault| {
                 fault.verdict.state != FaultState::Prefailed
                     && (fault.is_being_handled() || fault.handled_at.is_some_and(recent))
             })
         };
-        let own = self
-            .history
-            .all()
-            .filter(|fault| fault.component == component);
-        let own = own.map(|fault| self.root_of(fault.verdict.id));
-        let mut found: Vec<FaultId> = own.filter(explains).collect();
-        if let Some(down) = self.components[component].down
-            && runs
-        {
-            found.push(self.root_of(down.by));
+        let faulty = self.history.all().map(|fault| {
+            let root = self.root_of(fault.verdict.id);
+            (fault.component, root)
+        });
+        let mut suspects: Vec<(usize, FaultId)> =
+            faulty.filter(|(_, root)| explains(*root)).collect();
+        if runs {
+            let states = self.components.iter().enumerate();
+            let down = states.filter_map(|(component, state)| Some((component, state.down?.by)));
+            suspects.extend(down.map(|(component, by)| (component, self.root_of(by))));
         }
-        found
+        suspects
     }
 
     fn root_of(&self, id: FaultId) -> FaultId {

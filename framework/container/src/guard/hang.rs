@@ -11,10 +11,14 @@ use super::code::{CodeRange, LoadedObject};
 use super::registers;
 use super::trap::{self, Trap};
 
-/// So often a condemned callback is met outside the component's code before its thread is given
-/// up: the interruptions are 1 ms apart, and a loop of small allocations was back in its own code
-/// after 15 ms in 99 of 100 cases. What waits in the C library for ever never comes back.
-const PATIENCE: u32 = 50;
+/// So often a condemned callback is met running outside the component's code before its thread is
+/// given up. The interruptions are 1 ms apart; a loop that does little but allocate is back in its
+/// own code within tens of them, and whoever is stopped in the allocator keeps its lock for ever.
+const PATIENCE: u32 = 1000;
+
+/// Who waits in a system call is interrupted there every time, and seldom comes back: so many
+/// times as much does that count.
+const WEIGHT_OF_WAITING: u32 = 20;
 
 /// The container's own code: a component that is in it is about to ask or to return.
 static OWN_CODE: OnceLock<CodeRange> = OnceLock::new();
@@ -86,8 +90,15 @@ extern "C" fn handle(
         trap::take_off(frame, trap, context);
     } else if is_ours(instruction_pointer) {
         // On its way into the container or out of it.
-    } else if loss.watch().refuse() >= PATIENCE {
-        loss.publish_and_park(frame, trap);
+    } else {
+        let weight = if registers::is_in_system_call(instruction_pointer) {
+            WEIGHT_OF_WAITING
+        } else {
+            1
+        };
+        if loss.watch().refuse(weight) >= PATIENCE {
+            loss.publish_and_park(frame, trap);
+        }
     }
 }
 

@@ -10,13 +10,15 @@ use std::cell::{Cell, UnsafeCell};
 use std::ptr;
 use std::sync::atomic::{AtomicBool, Ordering, compiler_fence};
 
-use component_abi::{HostContext, Instance, Status, Text};
+use component_abi::{HostContext, Instance, Status};
 use corosensei::Yielder;
 use corosensei::stack::Stack as _;
 
-use super::copy::guarded_copy;
+use super::callback::Callback;
+use super::foreign::{ForeignBytes, ForeignBytesMut, ForeignText};
+use super::serve::{Input, What, Yielded};
 use super::stack::{ComponentStack, StackMemory};
-use super::{Callback, Exit, Input, Misbehaviour, What, Yielded};
+use super::{Exit, Misbehaviour};
 
 /// What a component asks. Pointers are as the component gave them: anything.
 #[derive(Debug, Clone, Copy)]
@@ -51,98 +53,6 @@ pub trait HostServices {
     /// container's for all else. (By reference: the fields were just
     /// written one by one, and a copy would wait for all of them.)
     fn answer(&mut self, request: &Request) -> u64;
-}
-
-/// Bytes that a component names for reading; perhaps not readable at all.
-#[derive(Debug, Clone, Copy)]
-pub struct ForeignBytes {
-    data: *const u8,
-    size: usize,
-}
-
-/// Bytes that a component names for writing.
-#[derive(Debug, Clone, Copy)]
-pub struct ForeignBytesMut {
-    data: *mut u8,
-    size: usize,
-}
-
-/// Text that a component names.
-#[derive(Debug, Clone, Copy)]
-pub struct ForeignText {
-    bytes: ForeignBytes,
-}
-
-/// Longest text that is taken from a component, in bytes; the rest is cut off.
-const LONGEST_TEXT: usize = 4096;
-
-impl ForeignBytes {
-    pub(super) fn new(data: *const u8, size: usize) -> Self {
-        Self { data, size }
-    }
-
-    /// How many bytes the component says there are.
-    pub fn size(self) -> usize {
-        self.size
-    }
-
-    /// Copies them to `to`, which must be as long; false if they are not readable.
-    #[must_use]
-    pub fn copy_to(self, to: &mut [u8]) -> bool {
-        // SAFETY: `to` is ours, writable for its length, and checked to be as long.
-        to.len() == self.size && unsafe { guarded_copy(to.as_mut_ptr(), self.data, self.size) }
-    }
-}
-
-impl ForeignBytesMut {
-    /// Memory that a component has registered, by its address.
-    pub fn at(address: usize, size: usize) -> Self {
-        let data = ptr::with_exposed_provenance_mut(address);
-        Self { data, size }
-    }
-
-    /// The same memory, for reading.
-    pub fn for_reading(self) -> ForeignBytes {
-        ForeignBytes::new(self.data, self.size)
-    }
-
-    pub(super) fn new(data: *mut u8, size: usize) -> Self {
-        Self { data, size }
-    }
-
-    /// How many bytes the component says there are.
-    pub fn size(self) -> usize {
-        self.size
-    }
-
-    /// Fills the first of them from `from`; false if `from` is longer or they are not writable.
-    #[must_use]
-    pub fn copy_from(self, from: &[u8]) -> bool {
-        // SAFETY: `from` is ours and readable for its length; the other side is the component's
-        // own, as far as it says the truth, and it may write anywhere itself.
-        from.len() <= self.size && unsafe { guarded_copy(self.data, from.as_ptr(), from.len()) }
-    }
-}
-
-impl ForeignText {
-    pub(super) fn new(text: Text) -> Self {
-        Self {
-            bytes: ForeignBytes {
-                data: text.data,
-                size: text.length,
-            },
-        }
-    }
-
-    /// The text, cut to a bound; invalid UTF-8 is replaced. `None` if it is not readable.
-    pub fn read(self) -> Option<String> {
-        let size = self.bytes.size.min(LONGEST_TEXT);
-        let mut buffer = vec![0u8; size];
-        let bytes = ForeignBytes { size, ..self.bytes };
-        bytes
-            .copy_to(&mut buffer)
-            .then(|| String::from_utf8_lossy(&buffer).into_owned())
-    }
 }
 
 /// Answers a request on behalf of the services behind the pointer.

@@ -9,7 +9,8 @@ use std::time::{Duration, Instant};
 
 use component_abi::{Status, Text};
 
-use super::host::{ForeignText, HostSide, Request};
+use super::foreign::ForeignText;
+use super::host::{HostSide, Request};
 use super::interpose;
 
 /// What a component does when its next callback is due: instead of the callback, or before it.

@@ -2,6 +2,8 @@
 
 use corosensei::trap::TrapHandlerRegs;
 
+use super::copy::guarded_copy;
+
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 compile_error!("the guard knows the signal contexts of x86-64 and ARM64 only");
 
@@ -28,6 +30,25 @@ pub(super) fn interrupted(context: &libc::ucontext_t) -> Registers {
         frame_pointer: registers[libc::REG_RBP as usize] as usize,
         link: 0,
     }
+}
+
+/// Whether a thread that was interrupted at `instruction_pointer` was in a system call: behind the
+/// instruction that makes one, or before it if the call is to be made again.
+pub(super) fn is_in_system_call(instruction_pointer: usize) -> bool {
+    /// `syscall`.
+    #[cfg(target_arch = "x86_64")]
+    const INSTRUCTION: [u8; 2] = [0x0f, 0x05];
+    /// `svc #0`.
+    #[cfg(target_arch = "aarch64")]
+    const INSTRUCTION: [u8; 4] = [0x01, 0x00, 0x00, 0xd4];
+    let behind = instruction_pointer.wrapping_sub(INSTRUCTION.len());
+    [behind, instruction_pointer].into_iter().any(|address| {
+        let mut found = [0u8; INSTRUCTION.len()];
+        let from = address as *const u8;
+        // SAFETY: `found` is ours; code that is not there or not readable gives a 'no'.
+        let is_readable = unsafe { guarded_copy(found.as_mut_ptr(), from, found.len()) };
+        is_readable && found == INSTRUCTION
+    })
 }
 
 /// Continues at `instruction_pointer` with all else unchanged.

@@ -14,8 +14,9 @@ use component_abi::Text;
 use libc::{c_int, sighandler_t, sigset_t};
 
 use super::copy::guarded_copy;
+use super::foreign::ForeignText;
 use super::hang;
-use super::host::{ForeignText, HostSide, Request};
+use super::host::{HostSide, Request};
 use super::{interpose, trap};
 
 /// The kernel's set of signals: one bit each, signal 1 the lowest.

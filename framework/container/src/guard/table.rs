@@ -2,7 +2,8 @@
 
 use component_abi::{Header, HostContext, HostTable, Status, Text};
 
-use super::host::{ForeignBytes, ForeignBytesMut, ForeignText, HostSide, Request};
+use super::foreign::{ForeignBytes, ForeignBytesMut, ForeignText};
+use super::host::{HostSide, Request};
 
 /// The table that every component gets.
 pub(super) static TABLE: HostTable = HostTable {

@@ -80,7 +80,7 @@ pub struct Watch {
     thread: AtomicI32,
     /// Generation that is to be broken off, with a mark in bit 32. Written by the watchdog.
     condemned: AtomicU64,
-    /// How often a condemned callback was met where it cannot be taken off.
+    /// How often a condemned callback was met where it cannot be taken off, weighted.
     refusals: AtomicU32,
     /// A limit for every callback while somebody waits for the lane; 0: nobody does.
     hurry: AtomicU32,
@@ -139,9 +139,9 @@ impl Watch {
         is_meant.then_some(inside)
     }
 
-    /// Counts a refusal; how many there have been before. Called inside the handler.
-    pub(super) fn refuse(&self) -> u32 {
-        self.refusals.fetch_add(1, Ordering::Relaxed)
+    /// Adds the weight of a refusal; the sum of those before. Called inside the handler.
+    pub(super) fn refuse(&self, weight: u32) -> u32 {
+        self.refusals.fetch_add(weight, Ordering::Relaxed)
     }
 
     #[inline]
@@ -237,18 +237,18 @@ mod tests {
         assert_eq!(watch.condemned(), None, "in nothing");
         let first = watch.enter(CallLimit::NONE);
         watch.condemn(1);
-        assert_eq!(watch.refuse(), 0);
-        assert_eq!(watch.refuse(), 1);
+        assert_eq!(watch.refuse(20), 0);
+        assert_eq!(watch.refuse(1), 20);
         let nested = watch.enter(CallLimit::NONE);
         assert_eq!(watch.condemned(), None, "its callee is not meant");
         watch.leave(nested);
         watch.condemn(1);
         assert_eq!(watch.condemned().map(|inside| inside.generation), Some(1));
-        assert_eq!(watch.refuse(), 2, "the same sentence again");
+        assert_eq!(watch.refuse(1), 21, "the same sentence again");
         watch.leave(first);
         let _second = watch.enter(CallLimit::NONE);
         assert_eq!(watch.condemned(), None);
         watch.condemn(3);
-        assert_eq!(watch.refuse(), 0, "a new sentence");
+        assert_eq!(watch.refuse(1), 0, "a new sentence");
     }
 }

@@ -4,14 +4,15 @@
 //! thread is at it, that thread sees the observation too. What is to be done with a component is an
 //! order to its executor.
 
+use std::collections::VecDeque;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
 
 use crossbeam::channel::{Receiver, Sender, bounded};
 use fault_manager::{
-    Action, ActionId, ActionOutcome, Effect, Evidence, FaultManager, Observation, PlannedAction,
-    Verdict,
+    Action, ActionId, ActionOutcome, Effect, Evidence, FaultId, FaultManager, Observation,
+    PlannedAction, Verdict,
 };
 
 use super::emergency::Emergency;
@@ -49,8 +50,25 @@ struct Core {
     manager: FaultManager,
     /// Orders whose time has not come.
     later: Vec<(u64, Order)>,
-    /// How long decisions took, by fault.
-    decisions: Vec<(u64, Duration)>,
+    /// How long decisions took, by fault, in microseconds.
+    decisions: VecDeque<(FaultId, u64)>,
+}
+
+impl Core {
+    /// How long the decision about a fault took, if it was timed.
+    fn decision_us(&self, id: FaultId) -> Option<u64> {
+        let known = self.decisions.iter().find(|(known, _)| *known == id)?;
+        Some(known.1)
+    }
+
+    fn time_decision(&mut self, id: FaultId, took: Duration) -> u64 {
+        if self.decisions.len() >= MOST_DECISIONS {
+            self.decisions.pop_front();
+        }
+        let took_us = u64::try_from(took.as_micros()).unwrap_or(u64::MAX);
+        self.decisions.push_back((id, took_us));
+        took_us
+    }
 }
 
 impl Supervisor {
@@ -70,7 +88,7 @@ impl Supervisor {
             core: Mutex::new(Core {
                 manager,
                 later: Vec::new(),
-                decisions: Vec::new(),
+                decisions: VecDeque::new(),
             }),
             orders,
             standbys,
@@ -206,9 +224,11 @@ impl Supervisor {
 
     /// The verdicts on record, oldest first.
     pub fn verdicts(&self) -> Vec<Verdict> {
-        let mut verdicts: Vec<Verdict> = self.lock().manager.verdicts().cloned().collect();
+        let core = self.lock();
+        let mut verdicts: Vec<Verdict> = core.manager.verdicts().cloned().collect();
         for verdict in &mut verdicts {
             self.environment.scenes.complete(verdict);
+            verdict.decision_us += core.decision_us(verdict.id).unwrap_or_default();
         }
         verdicts
     }
@@ -397,16 +417,9 @@ impl Supervisor {
     }
 
     fn record(&self, core: &mut Core, mut verdict: Verdict, took: Duration) {
-        let known = core.decisions.iter().find(|(id, _)| *id == verdict.id.0);
-        let decision = known.map_or(took, |(_, decision)| *decision);
-        if known.is_none() {
-            if core.decisions.len() >= MOST_DECISIONS {
-                core.decisions.remove(0);
-            }
-            core.decisions.push((verdict.id.0, took));
-        }
         self.environment.scenes.complete(&mut verdict);
-        verdict.decision_us += u64::try_from(decision.as_micros()).unwrap_or(u64::MAX);
+        let known = core.decision_us(verdict.id);
+        verdict.decision_us += known.unwrap_or_else(|| core.time_decision(verdict.id, took));
         self.environment.events.record(
             self.environment.clock.now_ns(),
             Event::Verdict(Box::new(verdict)),

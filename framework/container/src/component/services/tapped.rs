@@ -71,6 +71,7 @@ impl Services {
         if !data.copy_to(tap.scratch.bytes_mut()) {
             return self.bad_pointer("write");
         }
+        tap.scratch.set_origin(self.cycle_ns, self.incarnation);
         let mut times = tap.distort(at);
         loop {
             if times == 0 {
@@ -83,7 +84,9 @@ impl Services {
                 self.contaminated = true;
             }
             for (sender, wake) in &mut output.connections {
-                sender.send(self.cycle_ns, self.incarnation, |bytes| {
+                // A delayed datum keeps the time at which it was written.
+                let (stamp_ns, incarnation) = (tap.scratch.stamp_ns(), tap.scratch.incarnation());
+                sender.send(stamp_ns, incarnation, |bytes| {
                     bytes.copy_from_slice(tap.scratch.bytes());
                     true
                 });

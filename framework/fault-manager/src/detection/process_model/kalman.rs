@@ -7,8 +7,9 @@ use super::{DiscreteModel, ModelError};
 /// The Riccati equation is iterated so often at most; with 50 samples a second the slowest state of
 /// a model that is of any use settles within this time, 200 s.
 const ITERATIONS_MAXIMUM: u32 = 10_000;
-/// Relative change from one iteration to the next that is none any more.
-const CONVERGED: f64 = 1e-13;
+/// Relative change from one iteration to the next that is none any more: well above rounding, which
+/// never comes to rest, and well below what a gain means.
+const CONVERGED: f64 = 1e-10;
 /// The share of a wrong first state that is left when the filter is believed.
 const SETTLED: f64 = 0.05;
 /// No wait is longer, 20 s at 50 samples a second: a detector that never judges is none.
