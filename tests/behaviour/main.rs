@@ -17,5 +17,7 @@ mod ports;
 mod readme;
 mod reference_robot;
 mod services;
+mod several_applications;
 mod stopping;
 mod tidy;
+mod two_cameras;
