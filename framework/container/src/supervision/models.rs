@@ -86,8 +86,9 @@ pub struct ModelMonitor {
     samples: Arc<ArrayQueue<Sample>>,
     monitor: Monitor,
     inputs: Vec<f64>,
-    /// None: no sample since the last step.
-    outputs: Vec<Option<f64>>,
+    outputs: Vec<f64>,
+    /// Which outputs have had a sample since the last step.
+    sampled: Vec<bool>,
     complaining: bool,
 }
 
@@ -110,7 +111,8 @@ impl ModelMonitor {
             samples: Arc::new(ArrayQueue::new(QUEUE)),
             monitor,
             inputs: vec![f64::NAN; inputs],
-            outputs: vec![None; outputs],
+            outputs: vec![f64::NAN; outputs],
+            sampled: vec![false; outputs],
             complaining: false,
         }
     }
@@ -139,9 +141,13 @@ impl ModelMonitor {
                 }
                 Channel::Output(index) => {
                     if let Some(place) = self.outputs.get_mut(index) {
-                        *place = Some(sample.values[0]);
+                        *place = sample.values[0];
+                        self.sampled[index] = true;
                     }
-                    self.step(sample.at_ns, observations);
+                    if self.sampled.iter().all(|sampled| *sampled) {
+                        self.sampled.fill(false);
+                        self.step(sample.at_ns, observations);
+                    }
                 }
             }
         }
@@ -149,11 +155,8 @@ impl ModelMonitor {
 
     /// One step of the model, once every output has come.
     fn step(&mut self, at_ns: u64, observations: &Observations) {
-        let outputs: Option<Vec<f64>> = self.outputs.iter().copied().collect();
-        let Some(outputs) = outputs else { return };
-        self.outputs.fill(None);
         let at = Duration::from_nanos(at_ns);
-        match self.monitor.step(at, &self.inputs, &outputs) {
+        match self.monitor.step(at, &self.inputs, &self.outputs) {
             Some(Finding::Passed) if self.complaining => {
                 self.complaining = false;
                 observations.report(Observation::Passed(self.detector));
