@@ -16,7 +16,7 @@ mod threads;
 mod time;
 
 pub use emergency::{Actuator, CONTROLLED_STOP, Emergency, SafetyGate};
-pub use models::{Channel, ModelMonitor, Reading, Sampler};
+pub use models::{Channel, ModelMonitor, Reading, Reference, Sampler};
 pub use monitors::{InputAge, LOOK_PERIOD, Monitors, OverrunCount, Subject, WorkDone};
 pub use observations::Observations;
 pub use orders::{Order, Orders, Task};
