@@ -20,5 +20,7 @@ mod recovery;
 mod reference_robot;
 mod scenarios;
 mod services;
+mod several_applications;
 mod stopping;
 mod tidy;
+mod two_cameras;

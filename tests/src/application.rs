@@ -202,6 +202,12 @@ impl Application {
         self.outcome(child.wait(STOP_LIMIT))
     }
 
+    /// Runs these files in one container.
+    pub fn run_together(&self, files: &[PathBuf], arguments: &[&str]) -> Outcome {
+        let finished = self.start_files(files, arguments).wait(RUN_LIMIT);
+        self.outcome(finished)
+    }
+
     /// Starts a run with its rules and injections; [`Self::outcome`] tells what became of it.
     pub fn start(&self, arguments: &[&str]) -> Watched {
         let mut arguments: Vec<String> = arguments.iter().map(|it| (*it).to_owned()).collect();
@@ -226,10 +232,15 @@ impl Application {
     }
 
     fn start_file(&self, file: &Path, arguments: &[&str]) -> Watched {
+        self.start_files(&[file.to_owned()], arguments)
+    }
+
+    /// Starts these files in one container.
+    pub fn start_files(&self, files: &[PathBuf], arguments: &[&str]) -> Watched {
         let mut command = Command::new(artifacts().join("steadfast"));
         command
             .arg("run")
-            .arg(file)
+            .args(files)
             .args(arguments)
             .arg("--events")
             .arg(self.folder().join(EVENTS))

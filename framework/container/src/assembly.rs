@@ -90,6 +90,21 @@ pub fn assemble(
     options: &LibraryOptions,
     environment: &Arc<Environment>,
 ) -> Result<Assembly, Vec<AssemblyProblem>> {
+    assemble_together(specification, &[0], rules, options, environment)
+}
+
+/// Assembles several applications that are written as one; `firsts` says with which component each
+/// of them begins. No two of them share an executor.
+///
+/// # Errors
+/// All problems that were found.
+pub fn assemble_together(
+    specification: &ApplicationSpecification,
+    firsts: &[usize],
+    rules: &FaultRules,
+    options: &LibraryOptions,
+    environment: &Arc<Environment>,
+) -> Result<Assembly, Vec<AssemblyProblem>> {
     let mut libraries = Libraries::new(options);
     let primaries = libraries.load_all(&specification.components);
     let secondaries = secondaries(specification, rules, &mut libraries);
@@ -123,7 +138,7 @@ pub fn assemble(
     if !problems.is_empty() {
         return Err(problems);
     }
-    let executors = executors::group(specification, &components);
+    let executors = executors::group(specification, firsts, &components);
     connect::connect(specification, &primaries, &components, &executors);
     Ok(Assembly {
         components,
