@@ -1,6 +1,7 @@
 //! Around the fault manager: what is observed reaches it, what it decides is done.
 
 mod emergency;
+mod manager_ports;
 mod models;
 mod monitors;
 pub(crate) mod obedience;
@@ -14,6 +15,7 @@ mod supervisor;
 mod threads;
 
 pub use emergency::{Actuator, CONTROLLED_STOP, Emergency, SafetyGate};
+pub use manager_ports::ManagerOutputs;
 pub use models::{Channel, ModelMonitor, Reading, Sampler};
 pub use monitors::{InputAge, LOOK_PERIOD, Monitors, OverrunCount, Subject, WorkDone};
 pub use observations::Observations;

@@ -15,10 +15,12 @@ use fault_manager::{
     PlannedAction, Verdict,
 };
 
+use system_model::specification::ManagerPort;
+
 use super::emergency::Emergency;
 use super::orders::{Order, Orders, Task};
 use super::standby::Standbys;
-use super::{LOOK_PERIOD, Monitors};
+use super::{LOOK_PERIOD, ManagerOutputs, Monitors};
 use crate::component::Environment;
 use crate::event_log::Event;
 use crate::guard::loss::Loss;
@@ -52,6 +54,7 @@ struct Core {
     later: Vec<(u64, Order)>,
     /// How long decisions took, by fault, in microseconds.
     decisions: VecDeque<(FaultId, u64)>,
+    outputs: ManagerOutputs,
 }
 
 impl Core {
@@ -89,6 +92,7 @@ impl Supervisor {
                 manager,
                 later: Vec::new(),
                 decisions: VecDeque::new(),
+                outputs: ManagerOutputs::default(),
             }),
             orders,
             standbys,
@@ -100,6 +104,21 @@ impl Supervisor {
             wanted,
         };
         (supervisor, wants)
+    }
+
+    /// These components hear what the fault manager raises.
+    pub fn set_outputs(&self, outputs: ManagerOutputs) {
+        self.lock().outputs = outputs;
+    }
+
+    fn raise(&self, core: &mut Core, port: ManagerPort) {
+        let now_ns = self.environment.clock.now_ns();
+        for deaf in core.outputs.raise(port, now_ns) {
+            self.notice(&format!(
+                "'{deaf}' takes no events of the fault manager: '{}' is lost to it",
+                port.name()
+            ));
+        }
     }
 
     /// Prepares all standbys of a component that the rules want and are not there. One that cannot
@@ -370,6 +389,7 @@ impl Supervisor {
     /// Safe commands at once, from this thread; then each actuator by its category.
     fn stop_in_emergency(&self, core: &mut Core, action: ActionId, now_ns: u64) {
         let stops = self.emergency.engage(action);
+        self.raise(core, ManagerPort::EmergencyStop);
         if stops.is_empty() {
             self.ended(action, "no component is declared an actuator");
         }
@@ -419,6 +439,11 @@ impl Supervisor {
     fn record(&self, core: &mut Core, mut verdict: Verdict, took: Duration) {
         self.environment.scenes.complete(&mut verdict);
         let known = core.decision_us(verdict.id);
+        if known.is_none() {
+            // A verdict is recorded first when its fault is confirmed, and changes again only while
+            // its decision is remembered, but for one that is very old.
+            self.raise(core, ManagerPort::Fault);
+        }
         verdict.decision_us += known.unwrap_or_else(|| core.time_decision(verdict.id, took));
         self.environment.events.record(
             self.environment.clock.now_ns(),
