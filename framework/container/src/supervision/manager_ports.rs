@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use system_model::specification::ManagerPort;
 
+use super::Supervisor;
+use super::supervisor::Core;
 use crate::port::{MailSender, Sent};
 use crate::wake::Wake;
 
@@ -49,6 +51,24 @@ impl ManagerOutputs {
             (sent != Sent::Queued).then_some(one.component.as_str())
         });
         deaf.collect()
+    }
+}
+
+impl Supervisor {
+    /// These components hear what the fault manager raises.
+    pub fn set_outputs(&self, outputs: ManagerOutputs) {
+        self.lock().outputs = outputs;
+    }
+
+    /// Tells those who listen; one that is too busy to be told is on record.
+    pub(super) fn raise(&self, core: &mut Core, port: ManagerPort) {
+        let now_ns = self.environment().clock.now_ns();
+        for deaf in core.outputs.raise(port, now_ns) {
+            self.notice(&format!(
+                "'{deaf}' takes no events of the fault manager: '{}' is lost to it",
+                port.name()
+            ));
+        }
     }
 }
 

@@ -112,6 +112,15 @@ impl Subjects<'_> {
         self.rules.components.get(component)
     }
 
+    /// The name of a component, as rules use it.
+    fn named(&self, component: usize) -> &str {
+        let name = self.specification.components[component].name.as_str();
+        // With several applications in one container names begin with that of the application.
+        name.split_once('/')
+            .filter(|_| self.members.len() < self.specification.components.len())
+            .map_or(name, |(_, own)| own)
+    }
+
     fn detector(&self, component: usize, kind: DetectorKind) -> Option<DetectorId> {
         self.manager.detector(component, &kind)
     }
