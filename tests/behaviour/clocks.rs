@@ -2,9 +2,21 @@
 
 use tests::{Application, Member};
 
-/// Components of every kind, some of which fail.
+/// Components of every kind, some of which fail and are recovered again and again, until the
+/// application goes on without them.
 fn lively() -> Application {
+    let expendable = |name: &str| {
+        format!(
+            "<component name='{name}'><fault><retry_max>9</retry_max>\
+             <severity>ignore</severity></fault></component>"
+        )
+    };
     Application::new()
+        .rules(
+            &["panics", "writes_null", "overflows", "lost"]
+                .map(expendable)
+                .concat(),
+        )
         .with(
             &Member::new("counter", "counter")
                 .period(7)

@@ -43,9 +43,11 @@ impl Component {
                         "onCall",
                     ),
                 };
-                if self.run_or_fail(callback, name, loss).is_ok() || self.is_active() {
-                    self.services.message_done(inbox);
+                if self.run_or_fail(callback, name, loss).is_err() && !self.is_active() {
+                    // What else has arrived is for the one that takes its place.
+                    return;
                 }
+                self.services.message_done(inbox);
             }
         }
     }

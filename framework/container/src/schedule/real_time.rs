@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::clock::nanoseconds;
-use crate::component::{ComponentCell, Environment, mark_lost};
+use crate::component::{ComponentCell, Environment};
 use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::guard::loss::LostThread;
@@ -126,8 +126,8 @@ impl Work for RealTime {
     }
 
     fn after_loss(&mut self, lost: &LostThread) {
-        let reported = self.executor.order_was_lost(Some(&self.supervisor));
-        mark_lost(&self.components, lost, reported);
+        self.executor
+            .after_loss(&self.components, lost, &self.supervisor);
     }
 
     fn waker(&self) -> Option<Arc<Wake>> {

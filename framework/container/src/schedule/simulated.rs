@@ -191,11 +191,11 @@ impl Work for Simulated {
     }
 
     fn after_loss(&mut self, lost: &LostThread) {
-        let index = self.obeying.take();
-        let executor = index.and_then(|index| self.executors.get_mut(index));
-        let reported =
-            executor.is_some_and(|executor| executor.order_was_lost(Some(&self.supervisor)));
-        mark_lost(&self.components, lost, reported);
+        let index = self.obeying.take().or(self.running);
+        match index.and_then(|index| self.executors.get_mut(index)) {
+            Some(executor) => executor.after_loss(&self.components, lost, &self.supervisor),
+            None => mark_lost(&self.components, lost, false),
+        }
     }
 }
 
