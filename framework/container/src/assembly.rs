@@ -15,6 +15,7 @@ use system_model::specification::{
     ApplicationSpecification, ComponentSpecification, Place, PortKind,
 };
 
+pub(crate) use connect::EVENT_QUEUE;
 pub use factory::{Factory, Variant};
 
 use crate::component::{ComponentCell, Environment};

@@ -18,7 +18,7 @@ use crate::wake::Wake;
 
 /// Events that may wait for one receiver from one sender: two seconds of a sender that raises one
 /// in every cycle of 30 ms.
-const EVENT_QUEUE: usize = 64;
+pub(crate) const EVENT_QUEUE: usize = 64;
 
 /// Nonblocking calls that may wait for one provider from one caller.
 const CALL_QUEUE: usize = 16;
