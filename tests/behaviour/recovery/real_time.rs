@@ -47,8 +47,8 @@ fn every_way_to_fail_is_recovered_and_given_up_in_the_end() {
         application = application.with(&Member::new(way, way));
     }
     let all_given_up = |events: &str| {
-        let stops = |way: &&str| events.contains(&format!("\"stop {way}\",\"outcome\":\"done\""));
-        WAYS.iter().all(|way| stops(&way))
+        let stops = |way: &str| events.contains(&format!("\"stop {way}\",\"outcome\":\"done\""));
+        WAYS.iter().all(|way| stops(way))
     };
     let outcome = application.run_until(all_given_up).ended_well();
     for way in WAYS {
