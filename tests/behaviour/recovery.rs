@@ -4,6 +4,7 @@
 mod data;
 mod ending;
 mod ladder;
+mod real_time;
 
 use tests::{Application, Member, Outcome};
 
