@@ -123,6 +123,33 @@ fn without_a_backup_it_begins_anew() {
     );
 }
 
+/// The application comes up without it, and it is recovered as soon as the others run.
+#[test]
+fn what_failed_while_it_was_brought_up_is_recovered() {
+    for callback in ["onInitialize", "onStart"] {
+        let outcome = Application::new()
+            .with(&Member::new("counter", "counter"))
+            .with(&Member::new("recorder", "recorder"))
+            .connect("data", "counter.output", "recorder.input")
+            .injections(&format!(
+                "<inject component='counter' callback='{callback}' fault='segfault'/>"
+            ))
+            .simulate("1s")
+            .ended_well();
+        let expected = [("segfault".to_owned(), callback.to_owned())];
+        assert_eq!(outcome.faults("counter"), expected);
+        assert_eq!(outcome.actions(), ["reset counter: done"], "{callback}");
+        assert_eq!(outcome.component("counter")["incarnation"], 2, "{callback}");
+        assert_eq!(
+            outcome.component("counter")["state"],
+            "ACTIVE",
+            "{callback}"
+        );
+        assert!(outcome.cycles("counter") >= 99, "{callback}");
+        assert_eq!(outcome.application()["state"], "ACTIVE", "{callback}");
+    }
+}
+
 /// The state that was copied after the data had gone wrong is not brought back: the checkpoint is
 /// older than the first symptom. The numbers go on from there.
 #[test]
