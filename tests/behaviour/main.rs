@@ -14,6 +14,7 @@ mod faults;
 mod hangs;
 mod injections;
 mod life_cycle;
+mod manager_ports;
 mod ports;
 mod readme;
 mod recovery;

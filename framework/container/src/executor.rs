@@ -129,8 +129,8 @@ impl Executor {
             self.obeying = order.action;
             let afterwards = obedience::obey(&order, &cell, supervisor, lane);
             self.obeying = None;
-            if let Afterwards::Recovered { again } = afterwards {
-                obedience::work_at_once(&cell, kind, again, supervisor, lane);
+            if let Afterwards::Recovered { at_once } = afterwards {
+                obedience::work_at_once(&cell, kind, at_once, supervisor, lane);
                 self.prepares = true;
                 obedience::refill(order.component, supervisor, lane);
                 self.prepares = false;

@@ -2,6 +2,7 @@
 
 mod effects;
 mod emergency;
+mod manager_ports;
 mod models;
 mod monitors;
 pub(crate) mod obedience;
@@ -16,6 +17,7 @@ mod threads;
 mod time;
 
 pub use emergency::{Actuator, CONTROLLED_STOP, Emergency, SafetyGate};
+pub use manager_ports::ManagerOutputs;
 pub use models::{Channel, ModelMonitor, Reading, Reference, Sampler};
 pub use monitors::{InputAge, LOOK_PERIOD, Monitors, OverrunCount, Subject, WorkDone};
 pub use observations::Observations;

@@ -206,6 +206,23 @@ mod tests {
     }
 
     #[test]
+    fn one_of_several_applications_can_be_meant() {
+        let running = RunningApplication {
+            application: file_name_of("hri+local isation"),
+            process: 1,
+            socket: PathBuf::new(),
+        };
+        for (name, expected) in [
+            ("hri", true),
+            ("local isation", true),
+            ("hri+local isation", true),
+            ("isation", false),
+        ] {
+            assert_eq!(running.is_called(name), expected, "{name}");
+        }
+    }
+
+    #[test]
     fn only_sockets_of_the_dead_are_removed() {
         let outer = tempfile::tempdir().unwrap();
         let folder = outer.path().join("steadfast");

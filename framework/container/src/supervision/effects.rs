@@ -6,6 +6,7 @@ use std::time::Duration;
 use fault_manager::{
     Action, ActionId, ActionOutcome, Effect, Evidence, FaultManager, Observation, PlannedAction,
 };
+use system_model::specification::ManagerPort;
 
 use super::orders::{Order, Task};
 use super::supervisor::{Core, Supervisor};
@@ -75,6 +76,7 @@ impl Supervisor {
     /// Safe commands at once, from this thread; then each actuator by its category.
     fn stop_in_emergency(&self, core: &mut Core, action: ActionId, now_ns: u64) {
         let stops = self.emergency.engage(action);
+        self.raise(core, ManagerPort::EmergencyStop);
         if stops.is_empty() {
             self.ended(action, "no component is declared an actuator");
         }

@@ -21,10 +21,12 @@ const ENTER_LIMIT: Duration = Duration::from_secs(1);
 pub enum Afterwards {
     /// Nothing.
     Nothing,
-    /// The component was recovered. `again`: it has not worked since the recovery before.
+    /// The component was recovered.
     Recovered {
-        /// Whether it has not worked since the recovery before.
-        again: bool,
+        /// Whether it is to do at once what it failed to do: it was in ERROR, and has worked since
+        /// its last recovery. One that fails again and again waits for its next cycle, so that what
+        /// disturbs it may pass.
+        at_once: bool,
     },
 }
 
@@ -47,7 +49,7 @@ pub fn obey(
         );
         return Afterwards::Nothing;
     };
-    let again = component.is_unproven();
+    let at_once = component.state() == LifeCycleState::Error && !component.is_unproven();
     let result = perform(order, &mut component, supervisor, lane);
     let recovered =
         result.is_ok() && matches!(order.task, Task::Reset { .. } | Task::Replace { .. });
@@ -56,7 +58,7 @@ pub fn obey(
     }
     end(order.action, supervisor, result, component.incarnation());
     if recovered {
-        Afterwards::Recovered { again }
+        Afterwards::Recovered { at_once }
     } else {
         Afterwards::Nothing
     }
@@ -161,12 +163,11 @@ fn stop_actuator(
     }
 }
 
-/// One that recovered for the first time since it worked does at once what it failed to do; one
-/// that fails again and again waits for its next cycle, so that what disturbs it may pass.
+/// A recovered component works at once, if it is to. A passive one works whenever it is asked.
 pub fn work_at_once(
     cell: &ComponentCell,
     kind: ExecutionKind,
-    again: bool,
+    at_once: bool,
     supervisor: &Supervisor,
     lane: &Lane,
 ) {
@@ -177,7 +178,7 @@ pub fn work_at_once(
         component.prove();
         return;
     }
-    if !again {
+    if at_once {
         let now_ns = supervisor.environment().clock.now_ns();
         component.execute(now_ns, lane.loss());
         if component.is_active() {

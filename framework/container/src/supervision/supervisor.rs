@@ -11,11 +11,12 @@ use std::time::{Duration, Instant};
 
 use crossbeam::channel::{Receiver, Sender, bounded};
 use fault_manager::{FaultId, FaultManager, Observation, Verdict};
+use system_model::specification::ManagerPort;
 
-use super::Monitors;
 use super::emergency::Emergency;
 use super::orders::{Order, Orders};
 use super::standby::Standbys;
+use super::{ManagerOutputs, Monitors};
 use crate::component::Environment;
 use crate::event_log::Event;
 use crate::guard::loss::Loss;
@@ -49,6 +50,7 @@ pub(super) struct Core {
     pub(super) later: Vec<(u64, Order)>,
     /// How long decisions took, by fault, in microseconds.
     decisions: VecDeque<(FaultId, u64)>,
+    pub(super) outputs: ManagerOutputs,
 }
 
 impl Core {
@@ -86,6 +88,7 @@ impl Supervisor {
                 manager,
                 later: Vec::new(),
                 decisions: VecDeque::new(),
+                outputs: ManagerOutputs::default(),
             }),
             orders,
             standbys,
@@ -214,6 +217,11 @@ impl Supervisor {
     pub(super) fn record(&self, core: &mut Core, mut verdict: Verdict, took: Duration) {
         self.environment.scenes.complete(&mut verdict);
         let known = core.decision_us(verdict.id);
+        if known.is_none() {
+            // A verdict is recorded first when its fault is confirmed, and changes again only while
+            // its decision is remembered, but for one that is very old.
+            self.raise(core, ManagerPort::Fault);
+        }
         verdict.decision_us += known.unwrap_or_else(|| core.time_decision(verdict.id, took));
         self.environment.events.record(
             self.environment.clock.now_ns(),

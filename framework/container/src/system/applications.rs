@@ -96,6 +96,11 @@ impl Applications {
             connection.target.component += first;
             self.specification.connections.push(connection);
         }
+        for connection in &application.specification.manager_connections {
+            let mut connection = connection.clone();
+            connection.component.component += first;
+            self.specification.manager_connections.push(connection);
+        }
         let edges = application.specification.coordination.iter();
         let edges = edges.map(|(source, target)| (first + source, first + target));
         self.specification.coordination.extend(edges);
@@ -139,6 +144,7 @@ fn together(applications: &[Application]) -> ApplicationSpecification {
             .map_or_else(Default::default, |one| one.file.clone()),
         components: Vec::new(),
         connections: Vec::new(),
+        manager_connections: Vec::new(),
         coordination: Vec::new(),
         world: specifications().find_map(|one| one.world.clone()),
     }
@@ -191,6 +197,7 @@ mod tests {
                 file: "application.xml".into(),
                 components: Vec::new(),
                 connections: Vec::new(),
+                manager_connections: Vec::new(),
                 coordination: Vec::new(),
                 world: (name == "mapping").then(|| "world.xml".into()),
             },

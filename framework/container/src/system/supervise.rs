@@ -2,6 +2,7 @@
 
 mod actuators;
 mod injections;
+mod manager_ports;
 mod models;
 mod ports;
 mod rhythm;
@@ -76,6 +77,9 @@ pub(super) fn supervise(
         rhythm::watch(subjects, &mut monitors);
         models::watch(subjects, &mut monitors, &mut problems);
     }
+    // They say for all applications at once who is connected.
+    let outputs = subjects.first();
+    let outputs = outputs.map(|it| manager_ports::connect(it, &mut problems));
     if !problems.is_empty() {
         return Err(problems);
     }
@@ -89,7 +93,7 @@ pub(super) fn supervise(
         .iter()
         .map(|factory| Standbys::new(Arc::clone(factory), keeps_own))
         .collect();
-    Ok(Supervisor::new(
+    let (supervisor, wanted) = Supervisor::new(
         Arc::clone(environment),
         manager,
         orders,
@@ -97,7 +101,9 @@ pub(super) fn supervise(
         assembly.statuses.clone(),
         emergency,
         monitors,
-    ))
+    );
+    supervisor.set_outputs(outputs.unwrap_or_default());
+    Ok((supervisor, wanted))
 }
 
 impl Subjects<'_> {
