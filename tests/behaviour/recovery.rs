@@ -123,6 +123,33 @@ fn without_a_backup_it_begins_anew() {
     );
 }
 
+/// The application comes up without it, and it is recovered as soon as the others run.
+#[test]
+fn what_failed_while_it_was_brought_up_is_recovered() {
+    for callback in ["onInitialize", "onStart"] {
+        let outcome = Application::new()
+            .with(&Member::new("counter", "counter"))
+            .with(&Member::new("recorder", "recorder"))
+            .connect("data", "counter.output", "recorder.input")
+            .injections(&format!(
+                "<inject component='counter' callback='{callback}' fault='segfault'/>"
+            ))
+            .simulate("1s")
+            .ended_well();
+        let expected = [("segfault".to_owned(), callback.to_owned())];
+        assert_eq!(outcome.faults("counter"), expected);
+        assert_eq!(outcome.actions(), ["reset counter: done"], "{callback}");
+        assert_eq!(outcome.component("counter")["incarnation"], 2, "{callback}");
+        assert_eq!(
+            outcome.component("counter")["state"],
+            "ACTIVE",
+            "{callback}"
+        );
+        assert!(outcome.cycles("counter") >= 99, "{callback}");
+        assert_eq!(outcome.application()["state"], "ACTIVE", "{callback}");
+    }
+}
+
 /// The state that was copied after the data had gone wrong is not brought back: the checkpoint is
 /// older than the first symptom. The numbers go on from there.
 #[test]
@@ -148,8 +175,8 @@ fn a_contaminated_state_is_not_restored() {
     let verdict = outcome.verdicts()[0];
     assert_eq!(verdict["first_symptom_ns"], 100_000_000_u64);
     assert_eq!(verdict["confirmed_ns"], 130_000_000_u64);
-    // Ten numbers were good; those of the bad cycles come again. The last bad datum of the old
-    // incarnation is not delivered any more.
+    // Ten numbers were good; those of the bad cycles come again, from the next cycle on. The last bad
+    // datum of the old incarnation is not delivered any more.
     assert_eq!(outcome.notes(), ["checkpoint 10 restored"]);
     let received = outcome.logs("recorder").join(" ");
     let expected = "got 10=10 got 11=-1 got 12=-1 got 13=-1 got 11=11 got 12=12 got 13=13";

@@ -247,3 +247,33 @@ fn faults_during_a_recovery_are_not_lost() {
         );
     }
 }
+
+/// Its reader has nothing to read while a source waits for its reset: that is recorded as the
+/// consequence that it is, and the reader is left alone.
+#[test]
+fn a_consequence_starts_no_recovery() {
+    let outcome = application(
+        "<fault window='10s' backoff='300ms'><retry_max>3</retry_max></fault>",
+        &crashes(2),
+    )
+    .rules(
+        "<component name='recorder'><port name='input'><freshness max_age='50'/></port>\
+         <severity>reset</severity></component>\
+         <dependency><name>recorder</name><reference>counter</reference></dependency>",
+    )
+    .simulate("1s")
+    .ended_well();
+    assert_eq!(outcome.actions(), ["reset counter: done"; 2]);
+    let verdicts = outcome.verdicts();
+    let of_reader: Vec<_> = verdicts
+        .iter()
+        .filter(|verdict| verdict["component"] == "recorder")
+        .collect();
+    assert_eq!(of_reader.len(), 1, "{verdicts:#?}");
+    assert_eq!(of_reader[0]["kind"], "stale");
+    let second = &verdicts[1];
+    assert_eq!(second["component"], "counter");
+    assert_eq!(of_reader[0]["cause"]["consequence_of"], second["id"]);
+    assert_eq!(outcome.component("recorder")["incarnation"], 1);
+    assert_eq!(outcome.component("recorder")["state"], "ACTIVE");
+}

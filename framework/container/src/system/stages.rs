@@ -32,6 +32,7 @@ impl System {
                 },
             );
         }
+        self.begin_injections();
         for steps in [
             [Step::Construct, Step::Operate(Operation::Initialize)].as_slice(),
             [Step::Standby].as_slice(),
@@ -72,6 +73,16 @@ impl System {
             Ok(())
         } else {
             Err(StartError::NothingToBackUp { components })
+        }
+    }
+
+    /// What is to go wrong from the start goes wrong while the components are brought up.
+    fn begin_injections(&self) {
+        let environment = &self.environment;
+        if environment.injections.is_armed() {
+            let world = environment.world.as_deref();
+            let begun = environment.injections.advance(Duration::ZERO, world);
+            environment.record_injections(&begun);
         }
     }
 
