@@ -13,6 +13,7 @@ mod execution;
 mod faults;
 mod hangs;
 mod life_cycle;
+mod memory;
 mod ports;
 mod readme;
 mod reference_robot;

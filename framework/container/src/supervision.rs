@@ -15,7 +15,7 @@ mod threads;
 
 pub use emergency::{Actuator, CONTROLLED_STOP, Emergency, SafetyGate};
 pub use models::{Channel, ModelMonitor, Reading, Sampler};
-pub use monitors::{InputAge, LOOK_PERIOD, Monitors, OverrunCount, Subject, WorkDone};
+pub use monitors::{InputAge, LOOK_PERIOD, MemoryUse, Monitors, OverrunCount, Subject, WorkDone};
 pub use observations::Observations;
 pub use orders::{Order, Orders, Task};
 pub use scenes::Scenes;
