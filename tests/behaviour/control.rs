@@ -43,7 +43,7 @@ fn an_injected_fault_is_listed_shown_and_cleared() {
     assert_eq!(operator.faults()[0]["state"], "CLEARED");
     assert_eq!(operator.answer(&["clear", "1"])["cleared"], json!([]));
     let status = operator.status();
-    assert_eq!(status["application"], "application");
+    assert_eq!(status["applications"], json!({"application": "ACTIVE"}));
     assert_eq!(status["clock"], "real");
     assert_eq!(status["emergency_stop"], false);
     assert_eq!(status["components"]["counter"]["state"], "ACTIVE");

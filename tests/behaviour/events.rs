@@ -61,6 +61,7 @@ fn not_to_a_component_in_error() {
                 .property("fails_at", "3"),
         )
         .connect("event", "herald.news", "listener.news")
+        .not_recovered(&["listener"])
         .simulate("1s")
         .ended_well();
     assert_eq!(outcome.component("listener")["state"], "ERROR");

@@ -81,6 +81,7 @@ fn a_fault_in_a_shared_executor() {
             .with(&shared("faulty", misbehaviour))
             .with(&shared("after", "recorder"))
             .connect("data", "before.output", "after.input")
+            .not_recovered(&["faulty"])
             .simulate("1s")
             .ended_well();
         assert_eq!(outcome.component("faulty")["state"], "ERROR");

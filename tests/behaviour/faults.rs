@@ -1,4 +1,5 @@
-//! One component fails; it alone goes to ERROR, and the others do not miss a cycle.
+//! One component fails; it alone goes to ERROR, and the others do not miss a cycle. Rules say that
+//! nothing is recovered here: this is about the fault staying where it is.
 
 use tests::{Application, Member, Outcome};
 
@@ -35,6 +36,7 @@ fn application(misbehaviour: &str, callback: &str, call: u64) -> Application {
         .connect("data", "faulty.output", "sink.input")
         .connect("event", "herald.news", "faulty.heard")
         .connect("service", "asker.arithmetic", "faulty.arithmetic")
+        .not_recovered(&["faulty", "asker"])
 }
 
 fn healthy() -> Application {
@@ -181,6 +183,7 @@ fn all_at_once_in_real_time() {
                 &format!("sink_of_{misbehaviour}.input"),
             );
     }
+    let application = application.not_recovered(&MISBEHAVIOURS.map(|(name, _)| name));
     // The healthy ones go on long after the last fault.
     let outlived = |events: &str| {
         let faults = events.match_indices("\"event\":\"fault\"");
@@ -261,7 +264,8 @@ fn in_a_thread_of_the_component() {
             let application = healthy()
                 .with(&faulty)
                 .with(&Member::new("herald", "herald"))
-                .connect("event", "herald.news", "faulty.heard");
+                .connect("event", "herald.news", "faulty.heard")
+                .not_recovered(&["faulty"]);
             let outcome = application
                 .run_until(|events| events.contains("\"event\":\"fault\""))
                 .ended_well();

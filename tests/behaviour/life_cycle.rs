@@ -63,6 +63,7 @@ fn components_in_document_order_and_back() {
 fn a_failing_component_is_told() {
     let outcome = Application::new()
         .with(&Member::new("diary", "diary").property("fails", "yes"))
+        .not_recovered(&["diary"])
         .simulate("50ms")
         .ended_well();
     assert_eq!(

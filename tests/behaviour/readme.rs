@@ -1,4 +1,4 @@
-//! The README's first component, typed in as it stands there.
+//! The README's first component and its first rule, typed in as they stand there.
 
 use std::path::Path;
 use std::process::Command;
@@ -64,20 +64,50 @@ fn the_component_in_five_minutes_works_as_written() {
     assert_eq!(finished.code, Some(0), "{finished}");
 
     let libraries = built.join("debug").display().to_string();
-    let outcome = application
-        .run_file(
-            &folder.join("house.xml"),
-            &[
-                "--library-path",
-                &libraries,
-                "--clock",
-                "simulated",
-                "--for",
-                "2s",
-            ],
-        )
-        .ended_well();
+    let run = |more: &[&str]| {
+        let mut arguments = vec![
+            "--library-path",
+            &libraries,
+            "--clock",
+            "simulated",
+            "--for",
+            "2s",
+        ];
+        arguments.extend(more);
+        let house = folder.join("house.xml");
+        application.run_file(&house, &arguments).ended_well()
+    };
+    let outcome = run(&[]);
     assert_eq!(outcome.cycles("living_room"), 20);
     let said = outcome.logs("living_room").join("\n");
     assert!(said.contains("heating to 295 K"), "{said}");
+
+    let (rules, faults) = type_in_rules(&folder, &readme);
+    let mut check = Command::new(artifacts().join("steadfast"));
+    check.args(["check", "--strict", &rules, &faults]);
+    let finished = Watched::spawn(&mut check).wait(BUILD_LIMIT);
+    assert_eq!(finished.code, Some(0), "{finished}");
+    let outcome = run(&["--rules", &rules, "--inject", &faults]);
+    let verdicts = outcome.events("verdict", "living_room");
+    for kind in ["segfault", "out_of_range"] {
+        let handled = verdicts
+            .iter()
+            .any(|verdict| verdict["kind"] == kind && verdict["actions"][0]["outcome"] == "done");
+        assert!(handled, "{kind}: {verdicts:?}");
+    }
+    assert_eq!(outcome.component("living_room")["state"], "ACTIVE");
+}
+
+/// Rules and faults of the README's first rule.
+fn type_in_rules(folder: &Path, readme: &str) -> (String, String) {
+    let section = readme
+        .split("\n## ")
+        .find(|section| section.starts_with("A rule in two minutes"))
+        .expect("the README has a first rule");
+    let file = |name: &str| {
+        let path = folder.join(name);
+        std::fs::write(&path, block(section, name)).expect("a file");
+        path.display().to_string()
+    };
+    (file("house_rules.xml"), file("house_faults.xml"))
 }

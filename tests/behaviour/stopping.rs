@@ -44,14 +44,17 @@ fn by_a_signal_in_order() {
 /// After components have crashed in every way.
 #[test]
 fn after_faults() {
-    let mut application = Application::new().with(&Member::new("diary", "diary"));
-    for misbehaviour in [
+    let misbehaviours = [
         "panics",
         "writes_null",
         "aborts",
         "overflows_stack",
         "crashes_in_libc",
-    ] {
+    ];
+    let mut application = Application::new()
+        .with(&Member::new("diary", "diary"))
+        .not_recovered(&misbehaviours);
+    for misbehaviour in misbehaviours {
         application = application.with(&Member::new(misbehaviour, misbehaviour));
     }
     let all = |events: &str| events.matches("\"event\":\"fault\"").count() == 5;

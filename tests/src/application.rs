@@ -24,12 +24,18 @@ const STOP_LIMIT: Duration = Duration::from_secs(30);
 const EVENTS: &str = "events.jsonl";
 const SUMMARY: &str = "summary.json";
 
+/// Files that are passed to a run when they are there.
+const RULES: &str = "rules.xml";
+const INJECTIONS: &str = "injections.xml";
+
 /// An application in a folder that is removed with it.
 pub struct Application {
     folder: TempDir,
     subcomponents: String,
     connections: String,
     rest: String,
+    rules: String,
+    injections: String,
 }
 
 impl Default for Application {
@@ -49,6 +55,8 @@ impl Application {
             subcomponents: String::new(),
             connections: String::new(),
             rest: String::new(),
+            rules: String::new(),
+            injections: String::new(),
         }
     }
 
@@ -58,6 +66,13 @@ impl Application {
         self.write(&format!("{}.xml", member.instance()), member.profile());
         self.subcomponents += &member.subcomponent();
         self.subcomponents += "\n";
+        self
+    }
+
+    /// Writes a component's profile, named after the instance, for a rule that refers to it.
+    #[must_use]
+    pub fn with_profile(self, member: &Member) -> Self {
+        self.write(&format!("{}.xml", member.instance()), member.profile());
         self
     }
 
@@ -86,6 +101,30 @@ impl Application {
     #[must_use]
     pub fn element(mut self, text: &str) -> Self {
         self.rest += text;
+        self
+    }
+
+    /// Adds rules: elements of `fault_rules`.
+    #[must_use]
+    pub fn rules(mut self, text: &str) -> Self {
+        self.rules += text;
+        self
+    }
+
+    /// Faults of these components are only recorded: what failed stays in ERROR.
+    #[must_use]
+    pub fn not_recovered(self, components: &[&str]) -> Self {
+        let rule = |name: &&str| {
+            format!("<component name='{name}'><severity>ignore</severity></component>\n")
+        };
+        let rules: String = components.iter().map(rule).collect();
+        self.rules(&rules)
+    }
+
+    /// Adds faults that are made on purpose: elements of `fault_injections`.
+    #[must_use]
+    pub fn injections(mut self, text: &str) -> Self {
+        self.injections += text;
         self
     }
 
@@ -163,9 +202,27 @@ impl Application {
         self.outcome(child.wait(STOP_LIMIT))
     }
 
-    /// Starts a run; [`Self::outcome`] tells what became of it.
+    /// Runs these files in one container.
+    pub fn run_together(&self, files: &[PathBuf], arguments: &[&str]) -> Outcome {
+        let finished = self.start_files(files, arguments).wait(RUN_LIMIT);
+        self.outcome(finished)
+    }
+
+    /// Starts a run with its rules and injections; [`Self::outcome`] tells what became of it.
     pub fn start(&self, arguments: &[&str]) -> Watched {
-        self.start_file(&self.profile(), arguments)
+        let mut arguments: Vec<String> = arguments.iter().map(|it| (*it).to_owned()).collect();
+        for (option, name, root, text) in [
+            ("--rules", RULES, "fault_rules", &self.rules),
+            ("--inject", INJECTIONS, "fault_injections", &self.injections),
+        ] {
+            if !text.is_empty() {
+                let text = format!("<{root} application='application'>\n{text}</{root}>");
+                let path = self.write(name, text);
+                arguments.extend([option.to_owned(), path.display().to_string()]);
+            }
+        }
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        self.start_file(&self.profile(), &arguments)
     }
 
     /// Runs another file than the application's own.
@@ -175,10 +232,15 @@ impl Application {
     }
 
     fn start_file(&self, file: &Path, arguments: &[&str]) -> Watched {
+        self.start_files(&[file.to_owned()], arguments)
+    }
+
+    /// Starts these files in one container.
+    pub fn start_files(&self, files: &[PathBuf], arguments: &[&str]) -> Watched {
         let mut command = Command::new(artifacts().join("steadfast"));
         command
             .arg("run")
-            .arg(file)
+            .args(files)
             .args(arguments)
             .arg("--events")
             .arg(self.folder().join(EVENTS))

@@ -4,6 +4,7 @@
 #![forbid(unsafe_code)]
 
 mod application;
+mod assembled;
 mod build;
 mod member;
 mod operator;
@@ -11,6 +12,7 @@ mod outcome;
 mod watchdog;
 
 pub use application::Application;
+pub use assembled::{assembled, environment};
 pub use build::{artifacts, c_component};
 pub use member::Member;
 pub use operator::Operator;

@@ -144,6 +144,14 @@ fn ports(library: &str) -> String {
         "listener" => event("news", "input"),
         "adder" => service("provided"),
         "asker" => service("required"),
+        "sentry" => {
+            ["fault", "emergency_stop"]
+                .map(|name| {
+                    format!("<event_port><name>{name}</name><usage>input</usage></event_port>")
+                })
+                .concat()
+                + "<event_port><name>alarm</name><usage>output</usage></event_port>"
+        }
         "diary" | "no_component" | "old_abi" | "wrong_layout" | "crashes_when_loaded" => {
             String::new()
         }

@@ -1,5 +1,7 @@
 //! What a run came to: exit code, events, summary.
 
+use std::collections::BTreeMap;
+
 use serde_json::Value;
 
 use crate::watchdog::Finished;
@@ -113,6 +115,39 @@ impl Outcome {
             .into_iter()
             .map(|event| (text(&event["kind"]), text(&event["callback"])))
             .collect()
+    }
+
+    /// What the fault manager made of each fault in the end, in the order of their numbers.
+    pub fn verdicts(&self) -> Vec<&Value> {
+        let mut last = BTreeMap::new();
+        for event in self.events.iter().filter(|it| it["event"] == "verdict") {
+            last.insert(event["id"].as_u64(), event);
+        }
+        last.into_values().collect()
+    }
+
+    /// Everything that was done about faults, and how it ended: `reset counter: done`.
+    pub fn actions(&self) -> Vec<String> {
+        let actions = |verdict: &&Value| {
+            let actions = verdict["actions"].as_array().cloned();
+            actions.unwrap_or_default()
+        };
+        let words = |action: Value| {
+            let (what, outcome) = (text(&action["action"]), text(&action["outcome"]));
+            format!("{what}: {outcome}")
+        };
+        let verdicts = self.verdicts();
+        verdicts.iter().flat_map(actions).map(words).collect()
+    }
+
+    /// What is to be known of the actions that have a note, in order.
+    pub fn notes(&self) -> Vec<String> {
+        let verdicts = self.verdicts();
+        let actions = verdicts.iter().filter_map(|it| it["actions"].as_array());
+        let noted = actions
+            .flatten()
+            .filter(|action| action["note"].is_string());
+        noted.map(|action| text(&action["note"])).collect()
     }
 
     /// States that a component entered.

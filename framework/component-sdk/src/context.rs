@@ -10,7 +10,7 @@ use std::time::Duration;
 use component_abi::{HostContext, HostTable, LogLevel, Status, Text};
 
 use crate::component::Failure;
-use crate::data::PortData;
+use crate::data::{EventContent, PortData};
 
 /// Longest property value that is read, in bytes: properties are settings, not documents.
 const LONGEST_PROPERTY: usize = 4096;
@@ -156,7 +156,7 @@ impl Host {
         }
     }
 
-    pub(crate) fn raise<T: PortData>(self, port: u32, datum: &T) -> Status {
+    pub(crate) fn raise<T: EventContent>(self, port: u32, datum: &T) -> Status {
         // SAFETY: `datum` is readable for the size of `T`.
         unsafe {
             (self.table().raise)(

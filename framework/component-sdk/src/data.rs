@@ -13,6 +13,28 @@ pub unsafe trait PortData: Copy + 'static {
     const DESCRIPTOR: &'static TypeDescriptor;
 }
 
+/// What an event may carry: port data, or nothing, which is `()`.
+pub trait EventContent: sealed::EveryBitPatternIsValid + Copy + 'static {
+    /// The layout of the type, if there is anything in it.
+    const DATA_TYPE: Option<&'static TypeDescriptor>;
+}
+
+mod sealed {
+    /// What [`super::PortData`] promises; kept to it and `()`.
+    pub trait EveryBitPatternIsValid {}
+
+    impl<Data: super::PortData> EveryBitPatternIsValid for Data {}
+    impl EveryBitPatternIsValid for () {}
+}
+
+impl<Data: PortData> EventContent for Data {
+    const DATA_TYPE: Option<&'static TypeDescriptor> = Some(Data::DESCRIPTOR);
+}
+
+impl EventContent for () {
+    const DATA_TYPE: Option<&'static TypeDescriptor> = None;
+}
+
 /// A type that a field of port data may have: a number, an array, or port data itself.
 ///
 /// # Safety

@@ -11,7 +11,7 @@ use component_abi::{
 
 use crate::component::{Component, Outcome};
 use crate::context::{Context, Host};
-use crate::data::PortData;
+use crate::data::{EventContent, PortData};
 use crate::port::{Event, PortSet};
 use crate::service::Call;
 
@@ -263,7 +263,7 @@ unsafe fn bytes<'callback>(data: *const u8, size: usize) -> &'callback [u8] {
 }
 
 /// Reads a datum out of bytes of exactly its size.
-pub(crate) fn datum_from<Data: PortData>(bytes: &[u8]) -> Option<Data> {
+pub(crate) fn datum_from<Data: EventContent>(bytes: &[u8]) -> Option<Data> {
     // SAFETY: the length is checked; the read is unaligned; every bit pattern is a valid `Data`.
     (bytes.len() == size_of::<Data>())
         .then(|| unsafe { bytes.as_ptr().cast::<Data>().read_unaligned() })

@@ -62,7 +62,7 @@ pub use component::{Component, Failure, Outcome};
 pub use component_abi::Status;
 pub use component_sdk_derive::{PortData, Ports};
 pub use context::Context;
-pub use data::{FieldType, PortData};
+pub use data::{EventContent, FieldType, PortData};
 pub use port::{Event, EventInput, EventOutput, Input, Output, Port, PortSet};
 pub use service::{Call, Provided, Required, ServiceType};
 

@@ -7,7 +7,7 @@ use component_abi::{
 };
 
 use crate::context::Host;
-use crate::data::PortData;
+use crate::data::{EventContent, PortData};
 
 /// A set of ports: derive it for a struct whose fields are ports.
 pub trait PortSet: 'static {
@@ -52,13 +52,13 @@ pub struct Output<Data> {
     marker: PhantomData<fn(Data)>,
 }
 
-/// An event input; see [`crate::Component::on_event`].
+/// An event input; see [`crate::Component::on_event`]. Of events without content: `EventInput<()>`.
 pub struct EventInput<Content> {
     index: u32,
     marker: PhantomData<fn() -> Content>,
 }
 
-/// An event output.
+/// An event output. Of events without content: `EventOutput<()>`.
 pub struct EventOutput<Content> {
     host: Host,
     index: u32,
@@ -89,7 +89,7 @@ impl<Data: PortData> Output<Data> {
     }
 }
 
-impl<Content: PortData> EventOutput<Content> {
+impl<Content: EventContent> EventOutput<Content> {
     /// Sends an event to every connected input.
     ///
     /// # Errors
@@ -124,7 +124,7 @@ impl<'callback> Event<'callback> {
     }
 }
 
-impl<Content: PortData> EventInput<Content> {
+impl<Content: EventContent> EventInput<Content> {
     /// The event's content if it came by this port.
     pub fn content(&self, event: &Event<'_>) -> Option<Content> {
         (event.port == self.index)
@@ -134,11 +134,11 @@ impl<Content: PortData> EventInput<Content> {
 }
 
 macro_rules! port {
-    ($handle:ident, $kind:ident, $direction:ident, |$host:ident, $index:ident| $bind:expr) => {
-        impl<Data: PortData> Port for $handle<Data> {
+    ($handle:ident<$bound:ident>, $kind:ident, $direction:ident, |$host:ident, $index:ident| $bind:expr) => {
+        impl<Data: $bound> Port for $handle<Data> {
             const KIND: u32 = port_kind::$kind;
             const DIRECTION: u32 = port_direction::$direction;
-            const DATA_TYPE: Option<&'static TypeDescriptor> = Some(Data::DESCRIPTOR);
+            const DATA_TYPE: Option<&'static TypeDescriptor> = Data::DATA_TYPE;
             const METHODS: &'static [MethodDescriptor] = &[];
             fn bind($host: Host, $index: u32) -> Self {
                 $bind
@@ -147,22 +147,26 @@ macro_rules! port {
     };
 }
 
-port!(Input, DATA, INPUT, |host, index| Self {
+port!(Input<PortData>, DATA, INPUT, |host, index| Self {
     host,
     index,
     latest: None
 });
-port!(Output, DATA, OUTPUT, |host, index| Self {
+port!(Output<PortData>, DATA, OUTPUT, |host, index| Self {
     host,
     index,
     marker: PhantomData
 });
-port!(EventInput, EVENT, INPUT, |_host, index| Self {
-    index,
-    marker: PhantomData
+port!(EventInput<EventContent>, EVENT, INPUT, |_host, index| {
+    Self {
+        index,
+        marker: PhantomData,
+    }
 });
-port!(EventOutput, EVENT, OUTPUT, |host, index| Self {
-    host,
-    index,
-    marker: PhantomData
+port!(EventOutput<EventContent>, EVENT, OUTPUT, |host, index| {
+    Self {
+        host,
+        index,
+        marker: PhantomData,
+    }
 });

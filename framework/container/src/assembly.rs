@@ -2,9 +2,11 @@
 //! connected, components put into executors. Nothing of any component has run when this is done,
 //! and nothing is left half-made when it fails: all problems are listed.
 
+mod compare;
 mod connect;
 mod executors;
 mod factory;
+mod libraries;
 mod secondary;
 
 use std::path::PathBuf;
@@ -15,12 +17,14 @@ use system_model::specification::{
     ApplicationSpecification, ComponentSpecification, Place, PortKind,
 };
 
+pub(crate) use connect::EVENT_QUEUE;
 pub use factory::{Factory, Variant};
+use libraries::Libraries;
 
 use crate::component::{ComponentCell, Environment};
 use crate::executor::Executor;
 use crate::library::{
-    ComponentDescription, LibraryError, LibrarySearch, LoadedLibrary, PortDescription, probe,
+    ComponentDescription, LibraryError, LibrarySearch, LoadedLibrary, PortDescription,
 };
 use crate::status::ComponentStatus;
 
@@ -90,6 +94,21 @@ pub fn assemble(
     options: &LibraryOptions,
     environment: &Arc<Environment>,
 ) -> Result<Assembly, Vec<AssemblyProblem>> {
+    assemble_together(specification, &[0], rules, options, environment)
+}
+
+/// Assembles several applications that are written as one; `firsts` says with which component each
+/// of them begins. No two of them share an executor.
+///
+/// # Errors
+/// All problems that were found.
+pub fn assemble_together(
+    specification: &ApplicationSpecification,
+    firsts: &[usize],
+    rules: &FaultRules,
+    options: &LibraryOptions,
+    environment: &Arc<Environment>,
+) -> Result<Assembly, Vec<AssemblyProblem>> {
     let mut libraries = Libraries::new(options);
     let primaries = libraries.load_all(&specification.components);
     let secondaries = secondaries(specification, rules, &mut libraries);
@@ -99,7 +118,7 @@ pub fn assemble(
         for (component, library) in specification.components.iter().zip(&primaries) {
             problems.extend(compare_ports(component, library));
         }
-        problems.extend(connect::check(specification, &primaries));
+        problems.extend(compare::check(specification, &primaries));
         problems.extend(secondary::check(specification, &primaries, &secondaries));
     }
     if !problems.is_empty() {
@@ -123,7 +142,7 @@ pub fn assemble(
     if !problems.is_empty() {
         return Err(problems);
     }
-    let executors = executors::group(specification, &components);
+    let executors = executors::group(specification, firsts, &components);
     connect::connect(specification, &primaries, &components, &executors);
     Ok(Assembly {
         components,
@@ -185,55 +204,6 @@ fn factories(
         Arc::new(Factory::new(number, variants, rules, environment))
     })
     .collect()
-}
-
-/// Loads libraries; every instance gets a copy of its own: see `LoadedLibrary`.
-struct Libraries<'options> {
-    options: &'options LibraryOptions,
-    probed: Vec<PathBuf>,
-    problems: Vec<AssemblyProblem>,
-}
-
-impl<'options> Libraries<'options> {
-    fn new(options: &'options LibraryOptions) -> Self {
-        Self {
-            options,
-            probed: Vec::new(),
-            problems: Vec::new(),
-        }
-    }
-
-    fn load_all(&mut self, components: &[ComponentSpecification]) -> Vec<Option<LoadedLibrary>> {
-        components
-            .iter()
-            .map(|component| self.load(component))
-            .collect()
-    }
-
-    fn load(&mut self, component: &ComponentSpecification) -> Option<LoadedLibrary> {
-        let beside_profile = component.profile.parent().map(PathBuf::from);
-        let search = self.options.search.preceded_by(beside_profile);
-        let result = search.find(&component.library).and_then(|path| {
-            if let Some(executable) = &self.options.probe
-                && !self.probed.contains(&path)
-            {
-                probe(executable, &path)?;
-                self.probed.push(path.clone());
-            }
-            LoadedLibrary::load(&path)
-        });
-        match result {
-            Ok(library) => Some(library),
-            Err(error) => {
-                self.problems.push(AssemblyProblem::Library {
-                    component: component.name.clone(),
-                    place: component.place.clone(),
-                    error: Box::new(error),
-                });
-                None
-            }
-        }
-    }
 }
 
 /// Compares what profiles declare with what libraries have.

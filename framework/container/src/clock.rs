@@ -48,3 +48,8 @@ impl Clock {
         }
     }
 }
+
+/// A duration in nanoseconds; 584 years are enough.
+pub(crate) fn nanoseconds(duration: Duration) -> u64 {
+    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
+}

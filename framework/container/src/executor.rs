@@ -7,10 +7,12 @@ use std::time::Duration;
 use fault_manager::ActionId;
 use system_model::specification::{ExecutionKind, SchedulingPolicy};
 
-use crate::component::ComponentCell;
+use crate::component::{ComponentCell, mark_lost};
 use crate::guard::CallLimit;
+use crate::guard::loss::LostThread;
 use crate::lane::Lane;
-use crate::supervision::{Orders, Supervisor, obedience};
+use crate::supervision::obedience::{self, Afterwards};
+use crate::supervision::{Orders, Supervisor};
 use crate::wake::Wake;
 
 /// How long an executor waits for a component that another thread is inside of (a service call):
@@ -54,6 +56,8 @@ pub struct Executor {
     step: usize,
     /// The action whose order is being carried out.
     obeying: Option<ActionId>,
+    /// It prepares a standby: what is lost then is not the component.
+    prepares: bool,
 }
 
 impl Executor {
@@ -78,6 +82,7 @@ impl Executor {
             cycles: 0,
             step: 0,
             obeying: None,
+            prepares: false,
         }
     }
 
@@ -120,23 +125,36 @@ impl Executor {
                 .iter()
                 .find(|member| usize::try_from(member.number) == Ok(order.component));
             let Some(member) = member else { continue };
+            let (cell, kind) = (Arc::clone(&member.component), self.kind);
             self.obeying = order.action;
-            obedience::obey(&order, &member.component, self.kind, supervisor, lane);
+            let afterwards = obedience::obey(&order, &cell, supervisor, lane);
             self.obeying = None;
+            if let Afterwards::Recovered { at_once } = afterwards {
+                obedience::work_at_once(&cell, kind, at_once, supervisor, lane);
+                self.prepares = true;
+                obedience::refill(order.component, supervisor, lane);
+                self.prepares = false;
+            }
             supervisor.attend();
         }
     }
 
-    /// The thread was lost; whether that was in an order, whose failure is then on its way to the
-    /// fault manager.
-    pub fn order_was_lost(&mut self, supervisor: Option<&Supervisor>) -> bool {
-        let Some(action) = self.obeying.take() else {
-            return false;
-        };
-        if let Some(supervisor) = supervisor {
+    /// The thread was lost inside components of these: they are in ERROR. In an order that is the
+    /// order's failure; of a standby nothing is known any more.
+    pub fn after_loss(
+        &mut self,
+        components: &[Arc<ComponentCell>],
+        lost: &LostThread,
+        supervisor: &Supervisor,
+    ) {
+        if std::mem::take(&mut self.prepares) {
+            return;
+        }
+        let action = self.obeying.take();
+        if let Some(action) = action {
             obedience::lost(action, supervisor);
         }
-        true
+        mark_lost(components, lost, action.is_some());
     }
 
     /// Looks after components while nothing is due.

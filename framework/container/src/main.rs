@@ -25,7 +25,7 @@ struct Arguments {
 enum Command {
     /// Check profiles: every problem with its place and what to do about it.
     Check(CheckArguments),
-    /// Run an application.
+    /// Run one application, or several in one container.
     Run(RunArguments),
     /// List, show, clear and inject faults of a running application.
     Fault(FaultArguments),

@@ -4,6 +4,7 @@
 mod datum;
 mod mailbox;
 pub mod overwriting_queue;
+mod pile;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
@@ -14,6 +15,7 @@ use crossbeam::utils::CachePadded;
 pub use datum::Datum;
 pub use mailbox::{MailReceiver, MailSender, Sent, mailbox};
 use overwriting_queue::{Reader, Writer};
+use pile::Pile;
 
 /// The writing end of a connection.
 pub struct Sender {
@@ -93,11 +95,7 @@ pub fn connection(policy: QueuePolicy, queue_size: usize, size: usize) -> (Sende
             let (writer, arrivals) = overwriting_queue::queue(queue_size, &empty);
             let receive = ReceiveBuffer::Lifo {
                 arrivals,
-                pile: Pile {
-                    taken: empty.clone(),
-                    slots: vec![empty; queue_size],
-                    filled: 0,
-                },
+                pile: Pile::new(queue_size, &empty),
             };
             (SendBuffer::Queue(writer), receive)
         }
@@ -231,7 +229,7 @@ impl Receiver {
         match &self.buffer {
             ReceiveBuffer::Last(output) => output.output_buffer(),
             ReceiveBuffer::Fifo(reader) => reader.last(),
-            ReceiveBuffer::Lifo { pile, .. } => &pile.taken,
+            ReceiveBuffer::Lifo { pile, .. } => pile.taken(),
         }
     }
 
@@ -247,152 +245,10 @@ impl Receiver {
     }
 }
 
-/// What a LIFO input holds, newest on top. Its buffers are made once.
-struct Pile {
-    slots: Vec<Datum>,
-    filled: usize,
-    /// What was taken last.
-    taken: Datum,
-}
-
-impl Pile {
-    /// Puts a copy on top; true if the oldest had to go for it.
-    fn push(&mut self, datum: &Datum) -> bool {
-        let full = self.filled == self.slots.len();
-        if full {
-            self.slots.rotate_left(1);
-        } else {
-            self.filled += 1;
-        }
-        let top = &mut self.slots[self.filled - 1];
-        top.copy_from(datum);
-        full
-    }
-
-    fn pop(&mut self) -> bool {
-        let Some(top) = self.filled.checked_sub(1) else {
-            return false;
-        };
-        self.filled = top;
-        std::mem::swap(&mut self.taken, &mut self.slots[top]);
-        true
-    }
-}
-
 /// Adds one to a counter that has a single writer at a time: a plain store, not a locked one.
 fn increase(counter: &AtomicU64) {
     counter.store(counter.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn put(sender: &mut Sender, value: u8) {
-        assert!(sender.send(u64::from(value), 1, |bytes| {
-            bytes.fill(value);
-            true
-        }));
-    }
-
-    fn all(receiver: &mut Receiver) -> Vec<u8> {
-        let mut found = Vec::new();
-        while let Some(datum) = receiver.receive() {
-            found.push(datum.bytes()[0]);
-        }
-        found
-    }
-
-    #[test]
-    fn each_policy_keeps_what_it_should() {
-        type Case = (QueuePolicy, usize, &'static [u8], &'static [u8], u64);
-        let cases: [Case; 5] = [
-            (QueuePolicy::Last, 1, &[1, 2, 3], &[3], 0),
-            (QueuePolicy::Fifo, 3, &[1, 2], &[1, 2], 0),
-            (QueuePolicy::Fifo, 3, &[1, 2, 3, 4, 5], &[3, 4, 5], 2),
-            (QueuePolicy::Lifo, 3, &[1, 2, 3], &[3, 2, 1], 0),
-            (QueuePolicy::Lifo, 2, &[1, 2, 3, 4], &[4, 3], 2),
-        ];
-        for (policy, size, sent, expected, dropped) in cases {
-            let (mut sender, mut receiver) = connection(policy, size, 8);
-            assert!(receiver.receive().is_none(), "{policy:?} starts empty");
-            for value in sent {
-                put(&mut sender, *value);
-            }
-            assert_eq!(all(&mut receiver), expected, "{policy:?} of {size}");
-            assert_eq!(receiver.dropped(), dropped, "{policy:?} of {size}");
-        }
-    }
-
-    #[test]
-    fn a_fill_that_fails_sends_nothing() {
-        for policy in [QueuePolicy::Last, QueuePolicy::Fifo, QueuePolicy::Lifo] {
-            let (mut sender, mut receiver) = connection(policy, 4, 8);
-            assert!(!sender.send(0, 1, |_bytes| false));
-            assert!(receiver.receive().is_none());
-        }
-    }
-
-    #[test]
-    fn what_an_older_incarnation_sent_is_not_delivered() {
-        for policy in [QueuePolicy::Last, QueuePolicy::Fifo, QueuePolicy::Lifo] {
-            let (mut sender, mut receiver) = connection(policy, 4, 8);
-            put(&mut sender, 1);
-            sender.succeed(2);
-            assert!(receiver.receive().is_none(), "{policy:?}");
-            put(&mut sender, 2);
-            assert!(
-                receiver.receive().is_none(),
-                "{policy:?}: still the old one"
-            );
-            let sent = sender.send(3, 2, |bytes| {
-                bytes.fill(3);
-                true
-            });
-            assert!(sent);
-            assert_eq!(all(&mut receiver), [3], "{policy:?}");
-        }
-    }
-
-    #[test]
-    fn a_datum_is_given_to_a_second_incarnation_and_to_no_third() {
-        for policy in [QueuePolicy::Last, QueuePolicy::Fifo, QueuePolicy::Lifo] {
-            let (mut sender, mut receiver) = connection(policy, 4, 8);
-            put(&mut sender, 7);
-            assert!(receiver.receive().is_some());
-            assert_eq!(receiver.leave(), Leftover::Again, "{policy:?}");
-            assert_eq!(all(&mut receiver), [7], "{policy:?}: once more, only once");
-            assert_eq!(
-                receiver.leave(),
-                Leftover::SetAside { stamp_ns: 7 },
-                "{policy:?}"
-            );
-            assert!(receiver.receive().is_none(), "{policy:?}");
-            put(&mut sender, 8);
-            assert_eq!(all(&mut receiver), [8], "{policy:?}");
-            assert_eq!(receiver.leave(), Leftover::Again, "{policy:?}: another one");
-        }
-    }
-
-    #[test]
-    fn a_newer_last_value_wins_over_one_that_was_in_work() {
-        let (mut sender, mut receiver) = connection(QueuePolicy::Last, 1, 8);
-        put(&mut sender, 1);
-        assert!(receiver.receive().is_some());
-        receiver.leave();
-        put(&mut sender, 2);
-        assert_eq!(all(&mut receiver), [2]);
-    }
-
-    #[test]
-    fn clearing_forgets_what_had_arrived() {
-        for policy in [QueuePolicy::Last, QueuePolicy::Fifo, QueuePolicy::Lifo] {
-            let (mut sender, mut receiver) = connection(policy, 4, 8);
-            put(&mut sender, 1);
-            receiver.clear();
-            assert!(receiver.receive().is_none());
-            put(&mut sender, 2);
-            assert_eq!(all(&mut receiver), [2]);
-        }
-    }
-}
+mod tests;

@@ -1,6 +1,7 @@
 //! The summary of a run, for people and as JSON.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use robot_simulation::RobotSummary;
 use serde::Serialize;
@@ -23,8 +24,8 @@ pub struct Summary {
 /// One application.
 #[derive(Debug, Clone, Serialize)]
 pub struct ApplicationSummary {
-    /// `ACTIVE` if all its components were active when the run ended, `DEGRADED` if any was in
-    /// ERROR.
+    /// `ACTIVE` if all its components were active when the run ended, `STOPPED` if none was,
+    /// else `DEGRADED`.
     pub state: &'static str,
     /// Why the run ended.
     pub ended_by: &'static str,
@@ -73,14 +74,37 @@ impl ComponentSummary {
     }
 }
 
-/// The application's state, from those of its components.
-pub fn application_state(states: impl IntoIterator<Item = LifeCycleState>) -> &'static str {
-    if states
-        .into_iter()
-        .any(|state| matches!(state, LifeCycleState::Error | LifeCycleState::Destroyed))
-    {
-        "DEGRADED"
-    } else {
-        "ACTIVE"
+/// The application's state, from those of its components. `STOPPED`: none of them runs.
+pub fn application_state(components: &[Arc<ComponentStatus>]) -> &'static str {
+    let is_active = |one: &&Arc<ComponentStatus>| one.state() == LifeCycleState::Active;
+    match components.iter().filter(is_active).count() {
+        count if count == components.len() => "ACTIVE",
+        0 => "STOPPED",
+        _ => "DEGRADED",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_application_is_what_its_components_are() {
+        use LifeCycleState::{Active, Destroyed, Error, Inactive};
+        for (states, expected) in [
+            (&[][..], "ACTIVE"),
+            (&[Active, Active], "ACTIVE"),
+            (&[Active, Error], "DEGRADED"),
+            (&[Inactive, Active], "DEGRADED"),
+            (&[Inactive, Error, Destroyed], "STOPPED"),
+        ] {
+            let component = |state: &LifeCycleState| {
+                let status = ComponentStatus::new("camera".to_owned());
+                status.set_state(*state);
+                Arc::new(status)
+            };
+            let components: Vec<_> = states.iter().map(component).collect();
+            assert_eq!(application_state(&components), expected, "{states:?}");
+        }
     }
 }

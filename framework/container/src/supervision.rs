@@ -1,6 +1,8 @@
 //! Around the fault manager: what is observed reaches it, what it decides is done.
 
+mod effects;
 mod emergency;
+mod manager_ports;
 mod models;
 mod monitors;
 pub(crate) mod obedience;
@@ -12,14 +14,15 @@ mod scenes;
 mod standby;
 mod supervisor;
 mod threads;
+mod time;
 
 pub use emergency::{Actuator, CONTROLLED_STOP, Emergency, SafetyGate};
-pub use models::{Channel, ModelMonitor, Reading, Sampler};
+pub use manager_ports::ManagerOutputs;
+pub use models::{Channel, ModelMonitor, Reading, Reference, Sampler};
 pub use monitors::{InputAge, LOOK_PERIOD, MemoryUse, Monitors, OverrunCount, Subject, WorkDone};
 pub use observations::Observations;
 pub use orders::{Order, Orders, Task};
 pub use scenes::Scenes;
 pub use standby::Standbys;
 pub use supervisor::Supervisor;
-pub(crate) use supervisor::nanoseconds;
 pub use threads::ManagerThreads;

@@ -1,40 +1,39 @@
-//! A running application: brought up in order, run, and stopped in order, each with a deadline.
+//! Running applications: brought up in order, run, and stopped in order, each with a deadline.
 
 mod agenda;
+mod applications;
+mod options;
 mod real_time;
 mod stages;
+mod start_error;
 mod supervise;
 
-use std::path::PathBuf;
+use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use crossbeam::channel::Sender;
 use robot_simulation::Simulation;
-use system_model::injection::Injection;
-use system_model::process_model::ProcessModel;
-use system_model::rules::FaultRules;
 use system_model::specification::ApplicationSpecification;
 
-use crate::assembly::{Assembly, AssemblyProblem, LibraryOptions, assemble};
-use crate::clock::Clock;
+use crate::assembly::{Assembly, assemble_together};
 use crate::component::{ComponentCell, Environment};
 use crate::control::RunningSystem;
-use crate::device::Devices;
 use crate::event_log::{Event, EventLog, EventWriter};
-use crate::injection::Injections;
 use crate::lane::{Crew, Lane, remaining};
 use crate::library::PortDescription;
-use crate::schedule::BusyTime;
 use crate::status::ComponentStatus;
 use crate::summary::{ApplicationSummary, ComponentSummary, Summary, application_state};
-use crate::supervision::{ManagerThreads, Observations, Scenes, Supervisor};
+use crate::supervision::{ManagerThreads, Supervisor};
 use crate::world::World;
 
 pub use agenda::Failure;
 use agenda::LeftBehind;
+pub use applications::Application;
+use applications::Applications;
+pub use options::{ClockKind, RunOptions};
 use real_time::WorldThread;
+pub use start_error::StartError;
 use supervise::{inject, supervise};
 
 /// Loading devices, models and maps takes time; what the watchdog cannot break off by then hangs.
@@ -44,117 +43,12 @@ const BRING_UP_LIMIT: Duration = Duration::from_secs(45);
 /// In which everything must have stopped: what a person waits after Ctrl-C before pulling the plug.
 const STOP_LIMIT: Duration = Duration::from_secs(3);
 
-/// Which clock an application runs by.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ClockKind {
-    /// The machine's.
-    Real,
-    /// As fast as it goes, one thread, the same every time.
-    Simulated,
-}
-
-impl ClockKind {
-    /// The word used in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Real => "real",
-            Self::Simulated => "simulated",
-        }
-    }
-}
-
-/// How an application is run.
-#[derive(Debug)]
-pub struct RunOptions {
-    /// The clock.
-    pub clock: ClockKind,
-    /// For how long, by that clock; `None`: until stopped or the target is reached.
-    pub duration: Option<Duration>,
-    /// Seed of the simulated world, for the record.
-    pub seed: u64,
-    /// Where events are written.
-    pub events: Option<PathBuf>,
-    /// Where events are echoed for a person.
-    pub echo: Option<Sender<(u64, Event)>>,
-    /// How libraries are found and loaded.
-    pub libraries: LibraryOptions,
-    /// What counts as a fault and what is done about it; none: the defaults.
-    pub rules: FaultRules,
-    /// The process models that the rules name, by the name that they use.
-    pub models: Vec<(String, ProcessModel)>,
-    /// Faults that are made on purpose.
-    pub injections: Vec<Injection>,
-}
-
-/// Why an application did not start. Nothing of it runs.
-#[derive(Debug, thiserror::Error)]
-pub enum StartError {
-    /// It cannot be assembled.
-    #[error("{}", list(.0))]
-    Assembly(Vec<AssemblyProblem>),
-    /// Components refused to be initialised or started.
-    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
-    Components(Vec<Failure>),
-    /// Bringing it up took too long.
-    #[error(
-        "component '{component}' did not return within {} s from onInitialize or onStart\n  help: see its properties and the devices it opens; nothing was started",
-        BRING_UP_LIMIT.as_secs()
-    )]
-    Hangs {
-        /// Instance name.
-        component: String,
-    },
-    /// A rule asks for checkpoints of components that register no memory.
-    #[error(
-        "{} registered no memory (`critical`) by the end of onStart, so there is nothing to back up\n  help: take <backup> out of the rules of {}, or let the component register its state",
-        list_names(.components), list_names(.components)
-    )]
-    NothingToBackUp {
-        /// Instance names.
-        components: Vec<String>,
-    },
-    /// The event file cannot be written.
-    #[error("{} cannot be written: {error}", .path.display())]
-    Output {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        error: std::io::Error,
-    },
-    /// The system refused threads or files.
-    #[error("the container cannot run: {0}")]
-    System(#[from] std::io::Error),
-}
-
-fn list_names(names: &[String]) -> String {
-    let quoted: Vec<String> = names.iter().map(|name| format!("'{name}'")).collect();
-    quoted.join(", ")
-}
-
-fn list(problems: &[AssemblyProblem]) -> String {
-    let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
-    lines.join("\n")
-}
-
-fn environment(clock: ClockKind, events: EventLog, world: Option<Arc<World>>) -> Environment {
-    Environment {
-        clock: match clock {
-            ClockKind::Real => Clock::real(),
-            ClockKind::Simulated => Clock::simulated(),
-        },
-        events,
-        devices: Devices::new(world.clone()),
-        observations: Observations::default(),
-        scenes: Scenes::default(),
-        injections: Injections::default(),
-        world,
-        busy: BusyTime::default(),
-    }
-}
-
-/// A running application.
+/// Running applications.
 pub struct System {
+    /// Everything that runs, as one application.
     specification: ApplicationSpecification,
+    /// The name of each application, and its components.
+    applications: Vec<(String, Range<usize>)>,
     options: RunOptions,
     environment: Arc<Environment>,
     world: Option<Arc<World>>,
@@ -172,12 +66,14 @@ pub struct System {
 }
 
 impl System {
-    /// Assembles an application and brings it up; when this returns it runs.
+    /// Assembles applications and brings them up; when this returns they run. Their names differ,
+    /// and they drive in one world at most. Where there are several, their components are called
+    /// `application/component`.
     ///
     /// # Errors
-    /// If anything is wrong; then nothing of it runs.
+    /// If anything is wrong; then nothing of them runs.
     pub fn start(
-        specification: &ApplicationSpecification,
+        applications: Vec<Application>,
         simulation: Option<Simulation>,
         mut options: RunOptions,
     ) -> Result<Self, StartError> {
@@ -190,25 +86,22 @@ impl System {
                     error,
                 },
             )?;
-        let environment = Arc::new(environment(options.clock, events, world.clone()));
-        let assembly = assemble(
+        let environment = Arc::new(options.clock.environment(events, world.clone()));
+        let applications = Applications::new(applications);
+        let specification = &applications.specification;
+        let assembly = assemble_together(
             specification,
-            &options.rules,
+            &applications.firsts(),
+            &applications.rules,
             &options.libraries,
             &environment,
         )
         .map_err(StartError::Assembly)?;
         let names = specification.components.iter().map(|it| it.name.clone());
         environment.injections.prepare(names, options.seed);
-        inject(&options.injections, &assembly, &environment).map_err(StartError::Assembly)?;
-        let (supervisor, wanted) = supervise(
-            specification,
-            &options.rules,
-            &options.models,
-            &assembly,
-            &environment,
-        )
-        .map_err(StartError::Assembly)?;
+        inject(&applications.injections, &assembly, &environment).map_err(StartError::Assembly)?;
+        let (supervisor, wanted) =
+            supervise(&applications, &assembly, &environment).map_err(StartError::Assembly)?;
         let Assembly {
             components,
             statuses,
@@ -217,7 +110,8 @@ impl System {
             ..
         } = assembly;
         let mut system = Self {
-            specification: specification.clone(),
+            applications: applications.names(),
+            specification: applications.specification,
             options,
             environment,
             world,
@@ -244,6 +138,11 @@ impl System {
         Ok(system)
     }
 
+    /// The name of the application; of several, all of them with `+` in between.
+    pub fn name(&self) -> &str {
+        &self.specification.name
+    }
+
     /// What the container knows of each component.
     pub fn statuses(&self) -> &[Arc<ComponentStatus>] {
         &self.statuses
@@ -263,6 +162,7 @@ impl System {
     pub fn control(&self) -> RunningSystem {
         RunningSystem {
             specification: self.specification.clone(),
+            applications: self.applications.clone(),
             interfaces: Arc::clone(&self.interfaces),
             statuses: self.statuses.clone(),
             supervisor: Arc::clone(&self.supervisor),
@@ -374,16 +274,19 @@ impl System {
     }
 
     fn summary(&self, ended_by: &'static str) -> Summary {
-        let application = ApplicationSummary {
-            state: application_state(self.statuses.iter().map(|status| status.state())),
+        let application = |members: &Range<usize>| ApplicationSummary {
+            state: application_state(&self.statuses[members.clone()]),
             ended_by,
             time_s: self.now().as_secs_f64(),
             clock: self.options.clock.name(),
             seed: self.options.seed,
             events_lost: self.environment.events.lost(),
         };
+        let applications = self.applications.iter();
         Summary {
-            applications: [(self.specification.name.clone(), application)].into(),
+            applications: applications
+                .map(|(name, members)| (name.clone(), application(members)))
+                .collect(),
             components: self
                 .statuses
                 .iter()

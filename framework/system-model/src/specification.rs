@@ -37,6 +37,8 @@ pub struct ApplicationSpecification {
     pub components: Vec<ComponentSpecification>,
     /// All connections between them.
     pub connections: Vec<ConnectionSpecification>,
+    /// All connections with the fault manager.
+    pub manager_connections: Vec<ManagerConnection>,
     /// `coordination/depends`: `(source, target)` as indices into `components`; the source runs only
     /// in cycles after the target has run.
     pub coordination: Vec<(usize, usize)>,
@@ -180,6 +182,52 @@ pub struct ConnectionSpecification {
     pub target: PortReference,
     /// Where the application declares it.
     pub place: Place,
+}
+
+/// As what connections name the fault manager; no component of an application is called so.
+pub const FAULT_MANAGER: &str = "fault_manager";
+
+/// A connection of a component's event port with the fault manager. Its events have no content.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ManagerConnection {
+    /// The fault manager's end.
+    pub manager: ManagerPort,
+    /// The component's.
+    pub component: PortReference,
+    /// Where the application declares it.
+    pub place: Place,
+}
+
+/// The fault manager's event ports.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ManagerPort {
+    /// Output `fault`: a fault is confirmed, of whichever component.
+    Fault,
+    /// Output `emergency_stop`: the emergency stop is engaged.
+    EmergencyStop,
+    /// Input `fault`: the sender reports a fault of its own.
+    ReportedFault,
+}
+
+impl ManagerPort {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Fault, Self::EmergencyStop, Self::ReportedFault];
+
+    /// The word in connections.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fault | Self::ReportedFault => "fault",
+            Self::EmergencyStop => "emergency_stop",
+        }
+    }
+
+    /// Which way it faces, seen from the fault manager.
+    pub fn direction(self) -> PortDirection {
+        match self {
+            Self::Fault | Self::EmergencyStop => PortDirection::Output,
+            Self::ReportedFault => PortDirection::Input,
+        }
+    }
 }
 
 /// A port of a component of the application.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use system_profile::{LoadOptions, check_file, load_application, load_world};
+use system_profile::{LoadOptions, check_file, load_application, load_process_model, load_world};
 
 fn profiles() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../profiles")
@@ -17,6 +17,15 @@ fn target_following_has_no_problem_of_any_kind() {
     assert_eq!(application.components.len(), 11);
     let world = load_world(&application.world.expect("a world"));
     assert!(world.world.is_some() && world.problems.is_empty());
+}
+
+#[test]
+fn the_model_of_the_drive_has_no_problem_and_the_right_size() {
+    let outcome = load_process_model(&profiles().join("models/dc_motor.xml"));
+    assert!(outcome.problems.is_empty(), "{:#?}", outcome.problems);
+    let model = outcome.model.expect("a sound model");
+    let (inputs, outputs) = (model.state_space.b.columns, model.state_space.c.rows);
+    assert_eq!((inputs, outputs, model.inputs.len()), (2, 2, 2));
 }
 
 #[test]

@@ -12,17 +12,13 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use container::assembly::{Assembly, LibraryOptions, assemble};
-use container::clock::Clock;
-use container::component::{ComponentCell, Environment};
-use container::device::Devices;
-use container::event_log::EventLog;
+use container::assembly::Assembly;
+use container::component::ComponentCell;
 use container::executor::Executor;
 use container::guard::loss::LostThread;
 use container::lane::{Crew, Lane, Work};
-use container::library::LibrarySearch;
 use system_model::life_cycle::Operation;
-use system_profile::{LoadOptions, load_application};
+use tests::{assembled, environment};
 
 /// Cycles until every buffer has been used.
 const WARM_UP_CYCLES: u64 = 1_000;
@@ -123,29 +119,17 @@ fn main() {
     let mut arguments = std::env::args_os().skip(1).map(PathBuf::from);
     let application = arguments.next().expect("the application");
     let libraries = arguments.next().expect("the folder of the libraries");
-    let allocations = count(&application, libraries);
+    let allocations = count(&application, &libraries);
     println!("{allocations}");
 }
 
-fn count(application: &Path, libraries: PathBuf) -> u64 {
-    let loaded = load_application(application, &LoadOptions::default());
-    let specification = loaded.specification.expect("a sound application");
-    let (events, writer) = EventLog::open(None, false, None).expect("an event log");
-    let environment = Arc::new(Environment {
-        clock: Clock::simulated(),
-        events,
-        devices: Devices::default(),
-    });
-    let options = LibraryOptions {
-        search: LibrarySearch::new(vec![libraries]),
-        probe: None,
-    };
-    let assembly = assemble(&specification, &options, &environment);
+fn count(application: &Path, libraries: &Path) -> u64 {
+    let (environment, writer) = environment();
     let Assembly {
         components,
         executors,
         ..
-    } = assembly.unwrap_or_else(|problems| panic!("{problems:?}"));
+    } = assembled(application, libraries, &environment);
     let allocations = Arc::new(Mutex::new(None));
     let work = Cycles {
         components,

@@ -8,10 +8,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-use container::clock::Clock;
 use container::component::{Component, DataOutput, Environment, PortEnd, Services};
-use container::device::Devices;
-use container::event_log::EventLog;
 use container::guard::Guarded;
 use container::guard::loss::Loss;
 use container::library::LoadedLibrary;
@@ -20,6 +17,7 @@ use container::status::ComponentStatus;
 use serde_json::json;
 use system_model::life_cycle::{LifeCycleState, Operation};
 use system_model::specification::{PortDirection, PortKind, QueuePolicy};
+use tests::environment;
 
 /// How many components fail.
 const FAULTS: u64 = 10_000;
@@ -56,12 +54,7 @@ fn main() {
     Guarded::prepare_thread().expect("a stack for the handler");
     let libraries = KINDS.map(load);
     let overflow = load("overflows_stack");
-    let (events, writer) = EventLog::open(None, true, None).expect("an event log");
-    let environment = Arc::new(Environment {
-        clock: Clock::simulated(),
-        events,
-        devices: Devices::default(),
-    });
+    let (environment, writer) = environment();
     let mut healthy = Instance::new(&load("counter"), &environment);
     healthy.bring_up();
     // The first fault of each kind initialises what is made once.
@@ -115,6 +108,7 @@ impl Instance {
                         PortEnd::DataOutput(DataOutput {
                             size: SAMPLE_BYTES,
                             connections: vec![(sender, None)],
+                            tap: None,
                         })
                     }
                     (PortKind::Event, _) => PortEnd::EventInput,
@@ -125,6 +119,7 @@ impl Instance {
             Arc::from("instance"),
             1,
             Arc::clone(environment),
+            library.description.ports.clone().into(),
             ports,
             vec![("at_cycle".to_owned(), "1".to_owned())],
         );

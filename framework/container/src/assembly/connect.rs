@@ -1,4 +1,4 @@
-//! Connections: first compared on both sides, then made.
+//! Connections, made.
 
 use std::sync::Arc;
 
@@ -8,150 +8,20 @@ use system_model::specification::{
     QueuePolicy,
 };
 
-use super::{AssemblyProblem, find_port, list};
+use super::compare::{port_of, provided_method};
 use crate::component::{BoundMethod, ComponentCell, Inbox, PortEnd, Provider};
 use crate::executor::Executor;
 use crate::lane::SETUP_TOKEN;
-use crate::library::{LoadedLibrary, MethodDescription, PortDescription};
+use crate::library::LoadedLibrary;
 use crate::port::{connection, mailbox};
 use crate::wake::Wake;
 
 /// Events that may wait for one receiver from one sender: two seconds of a sender that raises one
 /// in every cycle of 30 ms.
-const EVENT_QUEUE: usize = 64;
+pub(crate) const EVENT_QUEUE: usize = 64;
 
 /// Nonblocking calls that may wait for one provider from one caller.
 const CALL_QUEUE: usize = 16;
-
-/// Compares both ends of every connection; all that do not fit.
-pub(super) fn check(
-    specification: &ApplicationSpecification,
-    libraries: &[LoadedLibrary],
-) -> Vec<AssemblyProblem> {
-    let mut problems = Vec::new();
-    for connection in &specification.connections {
-        let source = port_of(libraries, &connection.source);
-        let target = port_of(libraries, &connection.target);
-        let (Some(source), Some(target)) = (source, target) else {
-            // A declared port that the library lacks is reported once, at its declaration.
-            continue;
-        };
-        let mismatch = match connection.kind {
-            PortKind::Data | PortKind::Event => types(source, target),
-            PortKind::Service => methods(source, target),
-        };
-        if let Some((message, help)) = mismatch {
-            problems.push(AssemblyProblem::Connection {
-                place: connection.place.clone(),
-                message: format!("{}: {message}", ends(specification, connection)),
-                help,
-            });
-        }
-    }
-    problems
-}
-
-fn ends(specification: &ApplicationSpecification, connection: &ConnectionSpecification) -> String {
-    let name = |end: &PortReference| {
-        format!(
-            "'{}.{}'",
-            specification.components[end.component].name, end.port
-        )
-    };
-    format!(
-        "connection {} -> {}",
-        name(&connection.source),
-        name(&connection.target)
-    )
-}
-
-fn port_of<'library>(
-    libraries: &'library [LoadedLibrary],
-    end: &PortReference,
-) -> Option<&'library PortDescription> {
-    find_port(&libraries[end.component].description, &end.port)
-}
-
-pub(super) fn types(
-    source: &PortDescription,
-    target: &PortDescription,
-) -> Option<(String, String)> {
-    let fits = match (&source.data_type, &target.data_type) {
-        (None, None) => true,
-        (Some(source), Some(target)) => source.fits(target),
-        _ => false,
-    };
-    (!fits).then(|| {
-        let message = format!(
-            "the source carries {}, the target takes {}",
-            type_name(source.data_type.as_ref()),
-            type_name(target.data_type.as_ref())
-        );
-        let help = "both must be built with the same definition of the type".to_owned();
-        (message, help)
-    })
-}
-
-pub(super) fn methods(
-    required: &PortDescription,
-    provided: &PortDescription,
-) -> Option<(String, String)> {
-    for method in &required.methods {
-        let Some(other) = provided_method(provided, method) else {
-            return Some((
-                format!("the provider has no method '{}'", method.name),
-                format!(
-                    "it has {}",
-                    list(provided.methods.iter().map(|method| &method.name))
-                ),
-            ));
-        };
-        let same = same_type(method.request.as_ref(), other.1.request.as_ref())
-            && same_type(method.reply.as_ref(), other.1.reply.as_ref())
-            && method.blocking == other.1.blocking;
-        if !same {
-            return Some((
-                format!(
-                    "method '{}' is declared differently on both sides",
-                    method.name
-                ),
-                "request, reply and blocking must agree".to_owned(),
-            ));
-        }
-    }
-    None
-}
-
-fn provided_method<'library>(
-    provided: &'library PortDescription,
-    method: &MethodDescription,
-) -> Option<(usize, &'library MethodDescription)> {
-    provided
-        .methods
-        .iter()
-        .enumerate()
-        .find(|(_, other)| other.name == method.name)
-}
-
-fn same_type(one: Option<&DataType>, other: Option<&DataType>) -> bool {
-    match (one, other) {
-        (None, None) => true,
-        (Some(one), Some(other)) => one.fits(other),
-        _ => false,
-    }
-}
-
-fn type_name(data_type: Option<&DataType>) -> String {
-    data_type.map_or_else(
-        || "nothing".to_owned(),
-        |data_type| {
-            format!(
-                "'{}' ({} bytes, layout {:x})",
-                data_type.name, data_type.size, data_type.layout_hash
-            )
-        },
-    )
-}
 
 /// Makes all connections. They have been checked, so nothing is left out silently.
 pub(super) fn connect(

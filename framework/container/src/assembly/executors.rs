@@ -14,22 +14,33 @@ use crate::wake::Wake;
 
 /// Puts every component into its executor: a thread of its own; one that it shares with components
 /// of the same period and priority; or the one in which all passive components get their events.
+/// Components share only with those of their own application, of which each begins at one of
+/// `firsts`.
 pub(super) fn group(
     specification: &ApplicationSpecification,
+    firsts: &[usize],
     components: &[Arc<ComponentCell>],
 ) -> Vec<Executor> {
     let mut executors: Vec<Executor> = Vec::new();
     for (index, component) in specification.components.iter().enumerate() {
-        let shared = executors
-            .iter()
-            .position(|executor| runs_with(executor, component));
+        let number = u32::try_from(index).unwrap_or(u32::MAX);
+        let shared = executors.iter().position(|executor| {
+            let leader = executor.members.first();
+            let is_near = leader.is_some_and(|leader| {
+                !firsts.iter().any(|first| {
+                    let first = u32::try_from(*first).unwrap_or(u32::MAX);
+                    leader.number < first && first <= number
+                })
+            });
+            is_near && runs_with(executor, component)
+        });
         let position = shared.unwrap_or_else(|| {
             executors.push(executor_for(component));
             executors.len() - 1
         });
         executors[position].members.push(Member {
             component: Arc::clone(&components[index]),
-            number: u32::try_from(index).unwrap_or(u32::MAX),
+            number,
             triggers: Vec::new(),
             followers: Vec::new(),
         });

@@ -4,7 +4,7 @@
 use system_model::rules::Secondary;
 use system_model::specification::{ApplicationSpecification, PortReference};
 
-use super::{AssemblyProblem, compare_ports, connect, find_port, list};
+use super::{AssemblyProblem, compare, compare_ports, find_port, list};
 use crate::library::LoadedLibrary;
 
 /// A secondary with its library.
@@ -48,8 +48,8 @@ fn unfit(
     let theirs = find_port(&candidate.library.description, &end.port);
     let fits = theirs.is_some_and(|theirs| {
         (theirs.kind, theirs.direction) == (ours.kind, ours.direction)
-            && connect::types(ours, theirs).is_none()
-            && connect::methods(ours, theirs).is_none()
+            && compare::types(ours, theirs).is_none()
+            && compare::methods(ours, theirs).is_none()
     });
     let secondary = &candidate.rule.specification;
     (!fits).then(|| AssemblyProblem::Connection {

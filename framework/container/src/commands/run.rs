@@ -1,6 +1,8 @@
-//! `steadfast run`: brings an application up, watches it, stops it in order.
+//! `steadfast run`: brings applications up, watches them, stops them in order.
 
+mod applications;
 mod duration;
+mod failure;
 mod live;
 mod models;
 mod report;
@@ -14,33 +16,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
-use container::assembly::{AssemblyProblem, LibraryOptions};
+use container::assembly::LibraryOptions;
 use container::control::Server;
 use container::library::LibrarySearch;
 use container::summary::Summary;
-use container::system::{ClockKind, RunOptions, StartError, System};
+use container::system::{Application, ClockKind, RunOptions, System};
 use crossbeam::channel::bounded;
 use robot_simulation::Simulation;
-use system_model::injection::Injection;
-use system_model::rules::FaultRules;
-use system_model::specification::ApplicationSpecification;
-use system_profile::{
-    LoadOptions, Problem, Severity, load_application, load_injections, load_rules, load_world,
-};
+use system_profile::{Problem, load_world};
 
 use super::problems;
+use failure::{Failed, exit_code, refused, unwritable};
 use live::Watcher;
-
-/// Exit codes of `run`, by kind; the manual of the command lists them.
-mod exit_code {
-    pub(super) const ENDED: u8 = 0;
-    pub(super) const PROFILE: u8 = 1;
-    pub(super) const FILE: u8 = 2;
-    pub(super) const LIBRARY: u8 = 3;
-    pub(super) const CONNECTION: u8 = 4;
-    pub(super) const COMPONENT: u8 = 5;
-    pub(super) const SYSTEM: u8 = 6;
-}
 
 /// How often a person's view is refreshed: fast enough to look alive, slow enough to be read.
 const REFRESH_PERIOD: Duration = Duration::from_millis(100);
@@ -62,14 +49,16 @@ const LIBRARY_PATH_VARIABLE: &str = "STEADFAST_LIBRARY_PATH";
   5  a component refused to be initialised or started, or hung in it
   6  the system refused threads or memory")]
 pub struct RunArguments {
-    /// Application profile (`package_profile` or `application_profile`)
-    application: PathBuf,
-    /// Fault rules: what counts as a fault and what is done about it; may be given several times
+    /// Application profiles (`package_profile` or `application_profile`), run in one container
+    #[arg(required = true, value_name = "APPLICATION.xml")]
+    applications: Vec<PathBuf>,
+    /// Fault rules: what counts as a fault and what is done about it; may be given several times,
+    /// also a `system_config` that says which applications need each other
     #[arg(long, value_name = "FILE.xml")]
     rules: Vec<PathBuf>,
-    /// Faults to be made on purpose
+    /// Faults to be made on purpose; may be given several times
     #[arg(long, value_name = "FILE.xml")]
-    inject: Option<PathBuf>,
+    inject: Vec<PathBuf>,
     /// How long to run, by the chosen clock: 500ms, 30s, 2min, 1h; without it until the target is
     /// reached or Ctrl-C
     #[arg(long = "for", value_name = "DURATION", value_parser = duration::parse)]
@@ -105,13 +94,7 @@ enum ClockArgument {
     Simulated,
 }
 
-/// Why there is nothing (more) to run: exit code and text.
-struct Failed {
-    code: u8,
-    text: String,
-}
-
-/// Runs an application to its end.
+/// Runs applications to their end.
 pub fn run(arguments: &RunArguments) -> ExitCode {
     match run_to_end(arguments) {
         Ok(()) => ExitCode::from(exit_code::ENDED),
@@ -124,10 +107,8 @@ pub fn run(arguments: &RunArguments) -> ExitCode {
 }
 
 fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
-    let (specification, rules) = load(arguments)?;
-    let injections = load_injections_of(arguments, &specification)?;
-    let models = models::load(&rules, &specification, &arguments.search_path)?;
-    let simulation = simulate(&specification, arguments.seed)?;
+    let applications = applications::load(arguments)?;
+    let simulation = simulate(&applications, arguments.seed)?;
     let stop_asked = watch_signals()?;
     let (echo, lines) = bounded(ECHO_QUEUE);
     let options = RunOptions {
@@ -140,14 +121,11 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         events: arguments.events.clone(),
         echo: Some(echo),
         libraries: libraries(arguments),
-        rules,
-        models,
-        injections,
     };
-    let started = System::start(&specification, simulation, options);
+    let started = System::start(applications, simulation, options);
     let system = started.map_err(|error| refused(&error))?;
-    let mut watcher = Watcher::new(&specification.name, lines);
-    let server = listen(&system, &specification.name, &watcher);
+    let mut watcher = Watcher::new(system.name(), lines);
+    let server = listen(&system, &watcher);
     let reason = loop {
         if stop_asked.load(Ordering::Acquire) {
             break "stopped";
@@ -171,8 +149,8 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
 }
 
 /// Lets an operator ask and command by `steadfast fault`. The robot runs without that, too.
-fn listen(system: &System, name: &str, watcher: &Watcher) -> Option<Server> {
-    match Server::start(name, Arc::new(system.control())) {
+fn listen(system: &System, watcher: &Watcher) -> Option<Server> {
+    match Server::start(system.name(), Arc::new(system.control())) {
         Ok(server) => {
             let path = server.path().display();
             watcher.say(&format!(
@@ -202,59 +180,6 @@ fn conclude(arguments: &RunArguments, summary: &Summary) -> Result<(), Failed> {
     Ok(())
 }
 
-fn load(arguments: &RunArguments) -> Result<(ApplicationSpecification, FaultRules), Failed> {
-    let options = LoadOptions {
-        search_paths: arguments.search_path.clone(),
-        dangling: Severity::Error,
-    };
-    for file in std::iter::once(&arguments.application)
-        .chain(&arguments.rules)
-        .chain(&arguments.inject)
-    {
-        std::fs::File::open(file).map_err(|error| Failed {
-            code: exit_code::FILE,
-            text: format!("{} cannot be read: {error}", file.display()),
-        })?;
-    }
-    let outcome = load_application(&arguments.application, &options);
-    let Some(specification) = outcome.specification else {
-        return Err(not_started(arguments, &outcome.problems));
-    };
-    let of_rules = load_rules(&specification, &arguments.rules, &options);
-    let Some(rules) = of_rules.rules else {
-        return Err(not_started(arguments, &of_rules.problems));
-    };
-    show(&outcome.problems);
-    show(&of_rules.problems);
-    Ok((specification, rules))
-}
-
-fn load_injections_of(
-    arguments: &RunArguments,
-    specification: &ApplicationSpecification,
-) -> Result<Vec<Injection>, Failed> {
-    let Some(path) = &arguments.inject else {
-        return Ok(Vec::new());
-    };
-    let outcome = load_injections(specification, path);
-    let Some(injections) = outcome.injections else {
-        return Err(not_started(arguments, &outcome.problems));
-    };
-    show(&outcome.problems);
-    Ok(injections)
-}
-
-fn not_started(arguments: &RunArguments, found: &[Problem]) -> Failed {
-    Failed {
-        code: exit_code::PROFILE,
-        text: format!(
-            "{}\n{} was not started",
-            problems::render(found, errors_on_terminal()),
-            arguments.application.display()
-        ),
-    }
-}
-
 /// Warnings do not stop a run, but a person should see them.
 fn show(found: &[Problem]) {
     if !found.is_empty() {
@@ -266,11 +191,8 @@ fn show(found: &[Problem]) {
     }
 }
 
-fn simulate(
-    specification: &ApplicationSpecification,
-    seed: u64,
-) -> Result<Option<Simulation>, Failed> {
-    let Some(path) = &specification.world else {
+fn simulate(applications: &[Application], seed: u64) -> Result<Option<Simulation>, Failed> {
+    let Some(path) = applications::world(applications)? else {
         return Ok(None);
     };
     let outcome = load_world(path);
@@ -321,38 +243,8 @@ fn libraries(arguments: &RunArguments) -> LibraryOptions {
     }
 }
 
-fn refused(error: &StartError) -> Failed {
-    let code = match error {
-        StartError::Assembly(problems) => match problems.first() {
-            Some(AssemblyProblem::Connection { .. }) => exit_code::CONNECTION,
-            Some(AssemblyProblem::Resources { .. }) => exit_code::SYSTEM,
-            Some(AssemblyProblem::Library { .. }) | None => exit_code::LIBRARY,
-        },
-        StartError::Components(_)
-        | StartError::Hangs { .. }
-        | StartError::NothingToBackUp { .. } => exit_code::COMPONENT,
-        StartError::Output { .. } => exit_code::FILE,
-        StartError::System(_) => exit_code::SYSTEM,
-    };
-    Failed {
-        code,
-        text: error.to_string(),
-    }
-}
-
 fn write(path: &Path, content: &[u8]) -> Result<(), Failed> {
     std::fs::write(path, content).map_err(|error| unwritable(Some(path), &error))
-}
-
-fn unwritable(path: Option<&Path>, error: &io::Error) -> Failed {
-    let name = path.map_or_else(
-        || "the output".to_owned(),
-        |path| path.display().to_string(),
-    );
-    Failed {
-        code: exit_code::FILE,
-        text: format!("{name} cannot be written: {error}"),
-    }
 }
 
 /// Whether a person watches.

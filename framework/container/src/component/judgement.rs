@@ -7,9 +7,9 @@ use system_model::fault::{Fault, FaultKind, SignalEvidence};
 use system_model::life_cycle::LifeCycleState;
 
 use super::Component;
+use crate::clock::nanoseconds;
 use crate::event_log::Event;
 use crate::guard::{Callback, Ending, Exit, Trap};
-use crate::supervision::nanoseconds;
 
 /// The first page is never mapped: an address in it is a field of a null pointer.
 const NULL_PAGE: usize = 4096;

@@ -195,7 +195,8 @@ impl Services {
             return Status::BAD_INPUT_PARAMETER;
         };
         if data.size() != input.size {
-            return Status::BAD_INPUT_PARAMETER;
+            let expected = input.size;
+            return self.wrong_size(port, data.size(), expected);
         }
         if input.tap.is_some() {
             return self.read_tapped(port, data);
@@ -216,7 +217,8 @@ impl Services {
             return Status::BAD_INPUT_PARAMETER;
         };
         if data.size() != output.size {
-            return Status::BAD_INPUT_PARAMETER;
+            let expected = output.size;
+            return self.wrong_size(port, data.size(), expected);
         }
         if output.tap.is_some() {
             return self.write_tapped(port, data);
@@ -237,7 +239,8 @@ impl Services {
             return Status::BAD_INPUT_PARAMETER;
         };
         if data.size() != output.size {
-            return Status::BAD_INPUT_PARAMETER;
+            let expected = output.size;
+            return self.wrong_size(port, data.size(), expected);
         }
         let mut answer = Status::SUCCESS;
         let fault = output.fault;

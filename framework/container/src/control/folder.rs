@@ -14,6 +14,9 @@ const MAX_NAME_LENGTH: usize = 40;
 
 const ENDING: &str = ".sock";
 
+/// Between the names of several applications of one process.
+const BETWEEN_NAMES: char = '+';
+
 /// Everything that group and others may do.
 const NOT_OWNER: u32 = 0o077;
 
@@ -53,9 +56,11 @@ pub struct RunningApplication {
 }
 
 impl RunningApplication {
-    /// Whether it may be the application of this name.
+    /// Whether it may be the application of this name, or have it among several.
     pub fn is_called(&self, application: &str) -> bool {
-        self.application == file_name_of(application)
+        let wanted = file_name_of(application);
+        let mut several = self.application.split(BETWEEN_NAMES);
+        self.application == wanted || several.any(|one| one == wanted)
     }
 }
 
@@ -161,7 +166,7 @@ fn is_alive(process: i32) -> bool {
 /// What of a name can stand in the name of a file.
 fn file_name_of(application: &str) -> String {
     let kept = |letter: char| match letter {
-        '.' | '_' | '-' => letter,
+        '.' | '_' | '-' | BETWEEN_NAMES => letter,
         letter if letter.is_ascii_alphanumeric() => letter,
         _ => '_',
     };
@@ -198,6 +203,23 @@ mod tests {
         }
         assert_eq!(file_name_of("../my robot/글"), ".._my_robot__");
         assert_eq!(file_name_of(&"n".repeat(200)).len(), MAX_NAME_LENGTH);
+    }
+
+    #[test]
+    fn one_of_several_applications_can_be_meant() {
+        let running = RunningApplication {
+            application: file_name_of("hri+local isation"),
+            process: 1,
+            socket: PathBuf::new(),
+        };
+        for (name, expected) in [
+            ("hri", true),
+            ("local isation", true),
+            ("hri+local isation", true),
+            ("isation", false),
+        ] {
+            assert_eq!(running.is_called(name), expected, "{name}");
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! A running system under an operator's control.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -14,7 +15,7 @@ use super::Control;
 use super::protocol::{Answer, Inject, Request};
 use crate::library::PortDescription;
 use crate::status::ComponentStatus;
-use crate::summary::ComponentSummary;
+use crate::summary::{ComponentSummary, application_state};
 use crate::supervision::Supervisor;
 
 /// The fault manager sees a request within microseconds; after this it is so busy that the operator
@@ -28,6 +29,8 @@ const REQUEST: &str = "the injection";
 pub struct RunningSystem {
     /// What runs: all components, by the names that requests use.
     pub specification: ApplicationSpecification,
+    /// The name of each application, and its components.
+    pub applications: Vec<(String, Range<usize>)>,
     /// The ports of each component, as its library describes them.
     pub interfaces: Arc<[Vec<PortDescription>]>,
     /// What the container knows of each component.
@@ -39,7 +42,8 @@ pub struct RunningSystem {
 /// The answer to [`Request::Status`].
 #[derive(Debug, Serialize)]
 struct Status {
-    application: String,
+    /// The state of each, by its name.
+    applications: BTreeMap<String, &'static str>,
     /// `real` or `simulated`.
     clock: &'static str,
     /// Since the start, by that clock.
@@ -82,8 +86,12 @@ impl RunningSystem {
     fn status(&self) -> Status {
         let clock = &self.supervisor.environment().clock;
         let statuses = self.statuses.iter();
+        let applications = self.applications.iter();
+        let state = |members: &Range<usize>| application_state(&self.statuses[members.clone()]);
         Status {
-            application: self.specification.name.clone(),
+            applications: applications
+                .map(|(name, members)| (name.clone(), state(members)))
+                .collect(),
             clock: if clock.is_simulated() {
                 "simulated"
             } else {

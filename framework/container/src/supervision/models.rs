@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crossbeam::queue::ArrayQueue;
-use fault_manager::detection::process_model::{InputMap, Monitor, Residual};
+use fault_manager::detection::process_model::{InputMap, Monitor, Residual, ResidualMonitor};
 use fault_manager::detection::{Finding, NumberReader};
 use fault_manager::{DetectorId, Evidence, Number, Observation, Symptom};
 use system_model::fault::FaultKind;
@@ -75,6 +75,39 @@ impl Sampler {
     }
 }
 
+/// What the process is compared with.
+pub enum Reference {
+    /// A model in state space, which gets the same inputs.
+    Model(Box<Monitor>),
+    /// A component that plays the model: it gets the same inputs by connections of the application,
+    /// and its outputs are the model's. So many are compared.
+    Component(Box<ResidualMonitor>, usize),
+}
+
+impl Reference {
+    /// Numbers of inputs and outputs.
+    fn size(&self) -> (usize, usize) {
+        match self {
+            Self::Model(monitor) => (monitor.model().inputs(), monitor.model().outputs()),
+            Self::Component(_, outputs) => (*outputs, *outputs),
+        }
+    }
+
+    fn step(&mut self, at: Duration, inputs: &[f64], outputs: &[f64]) -> Option<Finding<Residual>> {
+        match self {
+            Self::Model(monitor) => monitor.step(at, inputs, outputs),
+            Self::Component(monitor, _) => monitor.step(at, inputs, outputs),
+        }
+    }
+
+    fn reset(&mut self) {
+        match self {
+            Self::Model(monitor) => monitor.reset(),
+            Self::Component(monitor, _) => monitor.reset(),
+        }
+    }
+}
+
 /// A monitor with its samples.
 pub struct ModelMonitor {
     name: String,
@@ -84,10 +117,12 @@ pub struct ModelMonitor {
     status: Arc<ComponentStatus>,
     incarnation: u32,
     samples: Arc<ArrayQueue<Sample>>,
-    monitor: Monitor,
+    reference: Reference,
+    /// What goes into the model, or what the reference component says.
     inputs: Vec<f64>,
-    /// None: no sample since the last step.
-    outputs: Vec<Option<f64>>,
+    outputs: Vec<f64>,
+    /// Which outputs have had a sample since the last step.
+    sampled: Vec<bool>,
     complaining: bool,
 }
 
@@ -98,9 +133,9 @@ impl ModelMonitor {
         method: &'static str,
         detector: DetectorId,
         status: Arc<ComponentStatus>,
-        monitor: Monitor,
+        reference: Reference,
     ) -> Self {
-        let (inputs, outputs) = (monitor.model().inputs(), monitor.model().outputs());
+        let (inputs, outputs) = reference.size();
         Self {
             name,
             method,
@@ -108,9 +143,10 @@ impl ModelMonitor {
             incarnation: status.incarnation(),
             status,
             samples: Arc::new(ArrayQueue::new(QUEUE)),
-            monitor,
+            reference,
             inputs: vec![f64::NAN; inputs],
-            outputs: vec![None; outputs],
+            outputs: vec![f64::NAN; outputs],
+            sampled: vec![false; outputs],
             complaining: false,
         }
     }
@@ -128,7 +164,7 @@ impl ModelMonitor {
     pub(super) fn poll(&mut self, observations: &Observations) {
         if self.status.incarnation() != self.incarnation {
             self.incarnation = self.status.incarnation();
-            self.monitor.reset();
+            self.reference.reset();
         }
         while let Some(sample) = self.samples.pop() {
             match sample.channel {
@@ -139,9 +175,13 @@ impl ModelMonitor {
                 }
                 Channel::Output(index) => {
                     if let Some(place) = self.outputs.get_mut(index) {
-                        *place = Some(sample.values[0]);
+                        *place = sample.values[0];
+                        self.sampled[index] = true;
                     }
-                    self.step(sample.at_ns, observations);
+                    if self.sampled.iter().all(|sampled| *sampled) {
+                        self.sampled.fill(false);
+                        self.step(sample.at_ns, observations);
+                    }
                 }
             }
         }
@@ -149,11 +189,8 @@ impl ModelMonitor {
 
     /// One step of the model, once every output has come.
     fn step(&mut self, at_ns: u64, observations: &Observations) {
-        let outputs: Option<Vec<f64>> = self.outputs.iter().copied().collect();
-        let Some(outputs) = outputs else { return };
-        self.outputs.fill(None);
         let at = Duration::from_nanos(at_ns);
-        match self.monitor.step(at, &self.inputs, &outputs) {
+        match self.reference.step(at, &self.inputs, &self.outputs) {
             Some(Finding::Passed) if self.complaining => {
                 self.complaining = false;
                 observations.report(Observation::Passed(self.detector));

@@ -99,7 +99,7 @@ impl Subject {
         let incarnation = self.status.incarnation();
         let same = incarnation == self.incarnation;
         self.incarnation = incarnation;
-        let now_ns = super::nanoseconds(now);
+        let now_ns = crate::clock::nanoseconds(now);
         same && (self.status.state() == LifeCycleState::Active || self.status.hangs_at(now_ns))
     }
 
@@ -145,11 +145,11 @@ impl Monitors {
 
     /// Looks at everything, if it is time.
     pub fn look(&mut self, now: Duration, observations: &Observations) {
-        let now_ns = super::nanoseconds(now);
+        let now_ns = crate::clock::nanoseconds(now);
         if now_ns < self.due_ns {
             return;
         }
-        let period_ns = super::nanoseconds(LOOK_PERIOD);
+        let period_ns = crate::clock::nanoseconds(LOOK_PERIOD);
         // On the grid of the period: in simulated time every run looks at the same moments.
         self.due_ns = (now_ns / period_ns + 1) * period_ns;
         for input in &mut self.inputs {

@@ -16,14 +16,27 @@ use crate::lane::Lane;
 /// as long as such a call may take by default.
 const ENTER_LIMIT: Duration = Duration::from_secs(1);
 
+/// What is left to do after an order was carried out and its end reported.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Afterwards {
+    /// Nothing.
+    Nothing,
+    /// The component was recovered.
+    Recovered {
+        /// Whether it is to do at once what it failed to do: it was in ERROR, and has worked since
+        /// its last recovery. One that fails again and again waits for its next cycle, so that what
+        /// disturbs it may pass.
+        at_once: bool,
+    },
+}
+
 /// Carries an order out and reports how it ended.
 pub fn obey(
     order: &Order,
     cell: &ComponentCell,
-    kind: ExecutionKind,
     supervisor: &Supervisor,
     lane: &Lane,
-) {
+) -> Afterwards {
     let Some(mut component) = cell.enter(lane.token(), ENTER_LIMIT) else {
         if let Task::Tap { .. } = order.task {
             supervisor.notice("a fault cannot be injected: a service call is inside its component");
@@ -34,9 +47,9 @@ pub fn obey(
             Err("a service call is inside it".to_owned()),
             0,
         );
-        return;
+        return Afterwards::Nothing;
     };
-    let again = component.is_unproven();
+    let at_once = component.state() == LifeCycleState::Error && !component.is_unproven();
     let result = perform(order, &mut component, supervisor, lane);
     let recovered =
         result.is_ok() && matches!(order.task, Task::Reset { .. } | Task::Replace { .. });
@@ -45,8 +58,9 @@ pub fn obey(
     }
     end(order.action, supervisor, result, component.incarnation());
     if recovered {
-        work_at_once(&mut component, kind, again, supervisor, lane);
-        refill(order.component, supervisor, lane);
+        Afterwards::Recovered { at_once }
+    } else {
+        Afterwards::Nothing
     }
 }
 
@@ -149,20 +163,22 @@ fn stop_actuator(
     }
 }
 
-/// One that recovered for the first time since it worked does at once what it failed to do; one
-/// that fails again and again waits for its next cycle, so that what disturbs it may pass.
-fn work_at_once(
-    component: &mut Component,
+/// A recovered component works at once, if it is to. A passive one works whenever it is asked.
+pub fn work_at_once(
+    cell: &ComponentCell,
     kind: ExecutionKind,
-    again: bool,
+    at_once: bool,
     supervisor: &Supervisor,
     lane: &Lane,
 ) {
+    let Some(mut component) = cell.enter(lane.token(), ENTER_LIMIT) else {
+        return;
+    };
     if kind == ExecutionKind::Passive {
         component.prove();
         return;
     }
-    if !again {
+    if at_once {
         let now_ns = supervisor.environment().clock.now_ns();
         component.execute(now_ns, lane.loss());
         if component.is_active() {
@@ -172,7 +188,7 @@ fn work_at_once(
 }
 
 /// Another standby for the one that was used: now where time is simulated, else in the background.
-fn refill(component: usize, supervisor: &Supervisor, lane: &Lane) {
+pub fn refill(component: usize, supervisor: &Supervisor, lane: &Lane) {
     if supervisor.environment().clock.is_simulated() {
         supervisor.prepare_standbys(component, lane.loss());
     } else {

@@ -62,6 +62,10 @@ pub fn replace(
     if component.is_alive() {
         give_up(component, loss);
     }
+    if let Some(detectors) = component.services_mut().detectors() {
+        // By them injected faults find the one that is brought up in its place.
+        fresh.services_mut().set_detectors(detectors);
+    }
     let prepared = standbys.bring_up(&mut fresh, loss);
     prepared.map_err(|reason| format!("{readiness}: {reason}"))?;
     fresh.succeed(component);

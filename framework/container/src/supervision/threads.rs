@@ -10,7 +10,7 @@ use std::time::Duration;
 use crossbeam::channel::Receiver;
 
 use super::Supervisor;
-use super::supervisor::nanoseconds;
+use crate::clock::nanoseconds;
 use crate::guard::loss::LostThread;
 use crate::lane::{Crew, Lane, Work};
 

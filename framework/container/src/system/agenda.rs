@@ -72,6 +72,8 @@ pub(super) struct Agenda {
     /// Components that a thread is inside of for ever: nobody may enter them.
     left_behind: LeftBehind,
     supervisor: Arc<Supervisor>,
+    /// It prepares a standby: what is lost then is not the component.
+    prepares: AtomicBool,
     progress: Progress,
     failures: Failures,
 }
@@ -109,6 +111,7 @@ impl Agenda {
             last_first,
             left_behind,
             supervisor,
+            prepares: AtomicBool::new(false),
             progress: Progress {
                 begun: Arc::default(),
                 component: Arc::default(),
@@ -144,7 +147,9 @@ impl Agenda {
             Step::Operate(operation) => component.operate(operation, lane.loss()),
             Step::Standby => {
                 drop(component);
+                self.prepares.store(true, Ordering::Relaxed);
                 self.supervisor.prepare_standbys(index, lane.loss());
+                self.prepares.store(false, Ordering::Relaxed);
                 return;
             }
         };
@@ -179,6 +184,8 @@ impl Work for Agenda {
     }
 
     fn after_loss(&mut self, lost: &LostThread) {
-        mark_lost(&self.components, lost, false);
+        if !self.prepares.swap(false, Ordering::Relaxed) {
+            mark_lost(&self.components, lost, false);
+        }
     }
 }

@@ -21,15 +21,18 @@ impl System {
     /// Constructs and initialises all, then starts all. A component that traps or panics is in
     /// ERROR and the rest goes on; one that says no stops the whole start.
     pub(super) fn bring_up(&mut self) -> Result<(), StartError> {
-        self.environment.events.record(
-            0,
-            Event::RunStarted {
-                application: self.specification.name.clone(),
-                clock: self.options.clock.name(),
-                seed: self.options.seed,
-                components: self.components.len(),
-            },
-        );
+        for (name, members) in &self.applications {
+            self.environment.events.record(
+                0,
+                Event::RunStarted {
+                    application: name.clone(),
+                    clock: self.options.clock.name(),
+                    seed: self.options.seed,
+                    components: members.len(),
+                },
+            );
+        }
+        self.begin_injections();
         for steps in [
             [Step::Construct, Step::Operate(Operation::Initialize)].as_slice(),
             [Step::Standby].as_slice(),
@@ -70,6 +73,16 @@ impl System {
             Ok(())
         } else {
             Err(StartError::NothingToBackUp { components })
+        }
+    }
+
+    /// What is to go wrong from the start goes wrong while the components are brought up.
+    fn begin_injections(&self) {
+        let environment = &self.environment;
+        if environment.injections.is_armed() {
+            let world = environment.world.as_deref();
+            let begun = environment.injections.advance(Duration::ZERO, world);
+            environment.record_injections(&begun);
         }
     }
 

@@ -2,11 +2,13 @@
 
 mod actuators;
 mod injections;
+mod manager_ports;
 mod models;
 mod ports;
 mod rhythm;
 mod voters;
 
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -20,51 +22,64 @@ use crate::assembly::{Assembly, AssemblyProblem};
 use crate::component::{Component, Detectors, Environment, PortEnd};
 use crate::lane::SETUP_TOKEN;
 use crate::library::PortDescription;
-use crate::supervision::{Monitors, Orders, Standbys, Supervisor};
+use crate::supervision::{Emergency, Monitors, Orders, Standbys, Supervisor};
+
+use super::applications::{Applications, Part};
 
 pub(super) use injections::inject;
 
-/// Everything that rules are about.
+/// Everything that the rules of one application are about. Components count through all of them.
 struct Subjects<'start> {
+    /// All applications as one.
     specification: &'start ApplicationSpecification,
+    /// The components of the application that is looked at.
+    members: Range<usize>,
+    /// Its rules.
     rules: &'start FaultRules,
     models: &'start [(String, ProcessModel)],
     assembly: &'start Assembly,
     manager: &'start FaultManager,
 }
 
-/// The shell around the application's fault manager, and the channel by which it asks for standbys.
+/// The shell around the fault manager, and the channel by which it asks for standbys.
 ///
 /// # Errors
 /// Rules that do not fit the libraries.
 pub(super) fn supervise(
-    specification: &ApplicationSpecification,
-    rules: &FaultRules,
-    models: &[(String, ProcessModel)],
+    applications: &Applications,
     assembly: &Assembly,
     environment: &Arc<Environment>,
 ) -> Result<(Supervisor, Receiver<usize>), Vec<AssemblyProblem>> {
-    let manager = FaultManager::new(vec![Scope {
-        specification: specification.clone(),
-        rules: rules.clone(),
-    }]);
-    let subjects = Subjects {
-        specification,
-        rules,
-        models,
+    let parts = &applications.parts;
+    let scope = |part: &Part| Scope {
+        specification: part.application.specification.clone(),
+        rules: part.application.rules.clone(),
+    };
+    let manager = FaultManager::new(parts.iter().map(scope).collect());
+    let subjects = parts.iter().map(|part| Subjects {
+        specification: &applications.specification,
+        members: part.members.clone(),
+        rules: &part.rules,
+        models: &part.application.models,
         assembly,
         manager: &manager,
-    };
+    });
+    let subjects: Vec<Subjects<'_>> = subjects.collect();
     let mut problems = Vec::new();
     let mut monitors = Monitors::default();
-    for index in 0..assembly.components.len() {
-        subjects.instrument(index);
+    let emergency = Emergency::new(subjects.iter().flat_map(actuators::find).collect());
+    for subjects in &subjects {
+        for index in subjects.members.clone() {
+            subjects.instrument(index);
+        }
+        ports::watch(subjects, &emergency, &mut monitors, &mut problems);
+        voters::insert(subjects, &mut problems);
+        rhythm::watch(subjects, &mut monitors);
+        models::watch(subjects, &mut monitors, &mut problems);
     }
-    let emergency = actuators::find(&subjects);
-    ports::watch(&subjects, &emergency, &mut monitors, &mut problems);
-    voters::insert(&subjects, &mut problems);
-    rhythm::watch(&subjects, &mut monitors);
-    models::watch(&subjects, &mut monitors, &mut problems);
+    // They say for all applications at once who is connected.
+    let outputs = subjects.first();
+    let outputs = outputs.map(|it| manager_ports::connect(it, &mut problems));
     if !problems.is_empty() {
         return Err(problems);
     }
@@ -78,7 +93,7 @@ pub(super) fn supervise(
         .iter()
         .map(|factory| Standbys::new(Arc::clone(factory), keeps_own))
         .collect();
-    Ok(Supervisor::new(
+    let (supervisor, wanted) = Supervisor::new(
         Arc::clone(environment),
         manager,
         orders,
@@ -86,13 +101,24 @@ pub(super) fn supervise(
         assembly.statuses.clone(),
         emergency,
         monitors,
-    ))
+    );
+    supervisor.set_outputs(outputs.unwrap_or_default());
+    Ok((supervisor, wanted))
 }
 
 impl Subjects<'_> {
     /// The rules of a component.
     fn rules_of(&self, component: usize) -> Option<&ComponentRules> {
         self.rules.components.get(component)
+    }
+
+    /// The name of a component, as rules use it.
+    fn named(&self, component: usize) -> &str {
+        let name = self.specification.components[component].name.as_str();
+        // With several applications in one container names begin with that of the application.
+        name.split_once('/')
+            .filter(|_| self.members.len() < self.specification.components.len())
+            .map_or(name, |(_, own)| own)
     }
 
     fn detector(&self, component: usize, kind: DetectorKind) -> Option<DetectorId> {

@@ -79,13 +79,13 @@ impl Elements {
         matches!(self.scalar, Scalar::F32 | Scalar::F64)
     }
 
-    /// One element, `position` counts from the first of these; `None` past the end of the data.
+    /// One element, `position` counts from the first of these and is less than their number; `None`
+    /// past the end of the data.
+    #[inline]
     pub(crate) fn value(&self, bytes: &[u8], position: usize) -> Option<f64> {
         let size = self.scalar.size();
-        let bytes = bytes
-            .get(self.bytes.clone())?
-            .chunks_exact(size)
-            .nth(position)?;
+        let start = self.bytes.start + position * size;
+        let bytes = bytes.get(start..start + size)?;
         Some(read(self.scalar, bytes))
     }
 
@@ -110,6 +110,7 @@ fn chunks<const SIZE: usize>(bytes: &[u8]) -> impl Iterator<Item = &[u8; SIZE]> 
     bytes.as_chunks().0.iter()
 }
 
+#[inline]
 fn read(scalar: Scalar, bytes: &[u8]) -> f64 {
     macro_rules! read {
         ($($name:ident $number:ty),*) => {

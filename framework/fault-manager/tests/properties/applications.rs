@@ -47,6 +47,7 @@ pub fn application(name: &str, rules: &[ComponentRules], kinds: &[u8]) -> Scope 
             file: PathBuf::new(),
             components: named.collect(),
             connections: Vec::new(),
+            manager_connections: Vec::new(),
             coordination: Vec::new(),
             world: None,
         },

@@ -55,6 +55,7 @@ pub fn application(name: &str, components: &[&str]) -> Scope {
             file: PathBuf::new(),
             components: components.iter().map(|name| component(name)).collect(),
             connections: Vec::new(),
+            manager_connections: Vec::new(),
             coordination: Vec::new(),
             world: None,
         },

@@ -9,6 +9,7 @@ use system_model::specification::{
 };
 
 use super::instances::Scope;
+use super::manager;
 use super::ports::Port;
 use super::{Assembly, LoadedFile};
 use crate::problem::Severity;
@@ -29,6 +30,10 @@ impl Assembly<'_> {
         for connection in connections {
             if scope.file.document.is_given_up() {
                 return;
+            }
+            if manager::is_end(connection) {
+                self.connect_manager(scope, connection);
+                continue;
             }
             let source = self.port(scope, &connection.source);
             let target = self.port(scope, &connection.target);

@@ -8,6 +8,7 @@ use system_model::profile::{
 };
 use system_model::specification::ComponentSpecification;
 
+use super::manager;
 use super::ports::Port;
 use super::rules::Site;
 use super::{Assembly, LoadedFile, Sibling};
@@ -84,6 +85,7 @@ impl Assembly<'_> {
         };
         for subcomponent in subcomponents {
             report_duplicate(&scope, &subcomponent.name);
+            manager::report_reserved(file, &subcomponent.name);
             self.instances += 1;
             if self.instances > MAX_INSTANCES {
                 file.document.report(

@@ -6,6 +6,7 @@ mod coordination;
 mod files;
 pub(crate) mod injections;
 mod instances;
+mod manager;
 mod ports;
 mod references;
 pub(crate) mod rules;
@@ -14,7 +15,9 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use system_model::profile::{ApplicationProfile, CompositeProfile, Profile};
-use system_model::specification::{ApplicationSpecification, ComponentSpecification};
+use system_model::specification::{
+    ApplicationSpecification, ComponentSpecification, ManagerConnection,
+};
 
 use crate::problem::{Problem, Severity};
 use crate::suggest;
@@ -88,6 +91,7 @@ pub(crate) struct Assembly<'o> {
     pub(crate) files: Files,
     components: Vec<ComponentSpecification>,
     wires: Vec<Wire>,
+    manager_connections: Vec<ManagerConnection>,
     edges: Vec<Edge>,
     open_composites: Vec<PathBuf>,
     instances: usize,
@@ -105,6 +109,7 @@ impl<'o> Assembly<'o> {
             files: Files::default(),
             components: Vec::new(),
             wires: Vec::new(),
+            manager_connections: Vec::new(),
             edges: Vec::new(),
             open_composites: Vec::new(),
             instances: 0,
@@ -136,6 +141,7 @@ impl<'o> Assembly<'o> {
             name: profile.header.name.value.clone(),
             file: profile.header.file.clone(),
             components: std::mem::take(&mut self.components),
+            manager_connections: std::mem::take(&mut self.manager_connections),
             connections: self.wires.drain(..).map(|wire| wire.connection).collect(),
             coordination: self.edges.drain(..).map(|edge| edge.ends).collect(),
             world: world.flatten(),

@@ -103,3 +103,26 @@ fn circles_of_coordination_are_named() {
     let sound = project.application(three, "", &rules(&[("a", "b"), ("a", "c"), ("b", "c")]));
     assert_eq!(sound.sound().coordination, [(0, 1), (0, 2), (1, 2)]);
 }
+
+#[test]
+fn the_fault_manager_has_event_ports_and_a_name_of_its_own() {
+    let project = Project::new();
+    project
+        .application(
+            "fault_manager:sensor.xml s:sensor.xml p:planner.xml",
+            &connect_all(&[
+                "event fault_manager.smoke p.alarm",
+                "data fault_manager.fault p.range",
+                "event s.alarm fault_manager.emergency_stop",
+                "event fault_manager.emergency_stop s.alarm",
+            ]),
+            "",
+        )
+        .refused(&[
+            "a:2: `fault_manager` is the fault manager's own name",
+            "a:3: the fault manager has no output `smoke`",
+            "a:3: a connection of kind data with the fault manager",
+            "a:3: the fault manager has no input `emergency_stop`",
+            "a:3: the port alarm is an output event port",
+        ]);
+}

@@ -1,6 +1,7 @@
 //! Sends increasing numbers.
 //!
-//! Property `burst`: how many in each cycle (default 1).
+//! Properties: `burst`, how many in each cycle (default 1); `remembers`, whether the last number is
+//! registered as critical, so that a successor goes on from a checkpoint.
 #![forbid(unsafe_code)]
 
 use component_sdk::prelude::*;
@@ -15,6 +16,7 @@ struct Counter {
     ports: Ports,
     burst: u64,
     sent: u64,
+    memory: Option<&'static mut Sample>,
 }
 
 impl Component for Counter {
@@ -25,11 +27,20 @@ impl Component for Counter {
             ports,
             burst: 1,
             sent: 0,
+            memory: None,
         }
     }
 
     fn on_initialize(&mut self, context: &Context) -> Outcome {
         self.burst = context.property_or("burst", 1)?;
+        if context.property_or("remembers", false)? && self.memory.is_none() {
+            self.memory = Some(context.critical(Sample::default())?);
+        }
+        Ok(())
+    }
+
+    fn on_recover(&mut self, _context: &Context) -> Outcome {
+        self.sent = self.memory.as_ref().map_or(0, |memory| memory.number);
         Ok(())
     }
 
@@ -42,6 +53,9 @@ impl Component for Counter {
                 number: self.sent,
                 value,
             });
+        }
+        if let Some(memory) = &mut self.memory {
+            memory.number = self.sent;
         }
         Ok(())
     }

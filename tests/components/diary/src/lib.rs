@@ -1,18 +1,22 @@
 //! Logs each of its callbacks.
 //!
 //! Property `show`: names of properties, separated by commas, whose values it logs when it is
-//! initialised. Property `device`: a device that it opens then.
+//! initialised. Property `device`: a device that it opens then. Property `remembers`: whether it
+//! counts its cycles in memory that it registers as critical.
 #![forbid(unsafe_code)]
 
 use component_sdk::prelude::*;
+use test_parts::Sample;
 
-struct Diary;
+struct Diary {
+    memory: Option<&'static mut Sample>,
+}
 
 impl Component for Diary {
     type Ports = ();
 
     fn new((): ()) -> Self {
-        Self
+        Self { memory: None }
     }
 
     fn on_initialize(&mut self, context: &Context) -> Outcome {
@@ -25,6 +29,23 @@ impl Component for Diary {
         if let Some(device) = context.property("device") {
             context.open_device(&device)?;
         }
+        if context.property_or("remembers", false)? && self.memory.is_none() {
+            self.memory = Some(context.critical(Sample::default())?);
+        }
+        Ok(())
+    }
+
+    fn on_reset(&mut self, context: &Context) -> Outcome {
+        context.info("onReset");
+        if let Some(memory) = &mut self.memory {
+            memory.number = 0;
+        }
+        Ok(())
+    }
+
+    fn on_recover(&mut self, context: &Context) -> Outcome {
+        let remembered = self.memory.as_ref().map_or(0, |memory| memory.number);
+        context.info(format!("onRecover after {remembered} cycles"));
         Ok(())
     }
 
@@ -52,6 +73,9 @@ impl Component for Diary {
         context.info(format!("onExecute at {} ms", context.now().as_millis()));
         if context.property("fails").is_some() {
             return Err(Failure::internal("asked to"));
+        }
+        if let Some(memory) = &mut self.memory {
+            memory.number += 1;
         }
         Ok(())
     }

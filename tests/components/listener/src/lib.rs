@@ -1,6 +1,7 @@
 //! Logs the numbers of the events that it hears.
 //!
-//! Property `fails_at`: the cycle that it fails in (default: none).
+//! Properties: `fails_at`, the cycle that it fails in; `chokes_on`, a number that it panics on (by
+//! default none).
 #![forbid(unsafe_code)]
 
 use component_sdk::prelude::*;
@@ -14,6 +15,7 @@ struct Ports {
 struct Listener {
     ports: Ports,
     cycles_left: Option<u64>,
+    chokes_on: u64,
 }
 
 impl Component for Listener {
@@ -23,6 +25,7 @@ impl Component for Listener {
         Self {
             ports,
             cycles_left: None,
+            chokes_on: 0,
         }
     }
 
@@ -31,6 +34,7 @@ impl Component for Listener {
             0 => None,
             cycle => Some(cycle),
         };
+        self.chokes_on = context.property_or("chokes_on", 0)?;
         Ok(())
     }
 
@@ -47,6 +51,7 @@ impl Component for Listener {
     fn on_event(&mut self, context: &Context, event: &Event<'_>) -> Outcome {
         if let Some(news) = self.ports.news.content(event) {
             context.info(format!("heard {}", news.number));
+            assert_ne!(news.number, self.chokes_on, "cannot swallow it");
         }
         Ok(())
     }

@@ -1,8 +1,8 @@
 //! Receives numbers and says what it got.
 //!
 //! In every cycle it takes all that has arrived. Property `verbose`: log each cycle's numbers and
-//! values. When stopped it logs how many came, and how often a number was not the successor of the
-//! one before.
+//! values. Property `chokes_on`: a number that it panics on. When stopped it logs how many came, and
+//! how often a number was not the successor of the one before.
 #![forbid(unsafe_code)]
 
 use component_sdk::prelude::*;
@@ -16,6 +16,7 @@ struct Ports {
 struct Recorder {
     ports: Ports,
     verbose: bool,
+    chokes_on: Option<u64>,
     last: u64,
     received: u64,
     gaps: u64,
@@ -28,6 +29,7 @@ impl Component for Recorder {
         Self {
             ports,
             verbose: false,
+            chokes_on: None,
             last: 0,
             received: 0,
             gaps: 0,
@@ -36,12 +38,20 @@ impl Component for Recorder {
 
     fn on_initialize(&mut self, context: &Context) -> Outcome {
         self.verbose = context.property_or("verbose", false)?;
+        self.chokes_on = match context.property_or("chokes_on", 0)? {
+            0 => None,
+            number => Some(number),
+        };
         Ok(())
     }
 
     fn on_execute(&mut self, context: &Context) -> Outcome {
         let mut text = String::new();
         while let Some(sample) = self.ports.input.read() {
+            if self.chokes_on == Some(sample.number) {
+                context.info(format!("choked on {}", sample.number));
+                panic!("cannot swallow it");
+            }
             self.received += 1;
             self.gaps += u64::from(sample.number != self.last + 1);
             self.last = sample.number;

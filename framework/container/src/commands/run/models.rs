@@ -19,7 +19,8 @@ pub(super) fn load(
     let mut models: Vec<(String, ProcessModel)> = Vec::new();
     for monitor in &rules.monitors {
         let name = &monitor.rule.value.model;
-        if models.iter().any(|(known, _)| known == name) {
+        let is_component = application.components.iter().any(|it| it.name == *name);
+        if is_component || models.iter().any(|(known, _)| known == name) {
             continue;
         }
         let beside = [&monitor.rule.place.file, &application.file];

@@ -11,10 +11,11 @@ pub(super) fn print(
     summary: &Summary,
     picture: Option<&Path>,
 ) -> io::Result<()> {
+    writeln!(output)?;
     for (name, application) in &summary.applications {
         writeln!(
             output,
-            "\n{name}: {} after {:.2} s of {} time ({})",
+            "{name}: {} after {:.2} s of {} time ({})",
             application.state,
             application.time_s,
             application.clock,

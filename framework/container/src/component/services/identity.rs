@@ -92,9 +92,12 @@ impl Services {
     /// taken is void.
     pub(in crate::component) fn begin_incarnation(&mut self, incarnation: u32) {
         self.incarnation = incarnation;
-        for port in &self.ports {
+        for port in &mut self.ports {
             match port {
                 PortEnd::DataOutput(output) => {
+                    if let Some(tap) = &mut output.tap {
+                        tap.begin_anew();
+                    }
                     for (sender, _) in &output.connections {
                         sender.succeed(incarnation);
                     }

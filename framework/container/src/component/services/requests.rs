@@ -76,24 +76,44 @@ impl Services {
         Ok(Status::SUCCESS)
     }
 
+    /// The component named a datum or an event of another size than its type has. It is told, and
+    /// so is the fault manager.
+    #[cold]
+    pub(super) fn wrong_size(&self, port: u32, size: usize, expected: usize) -> Status {
+        if let Some(detectors) = self.detectors {
+            let evidence = Evidence::Size {
+                port: self.port_name(port as usize),
+                size,
+                expected,
+            };
+            self.tell(detectors.exception, FaultKind::WrongSize, 0, evidence);
+        }
+        Status::BAD_INPUT_PARAMETER
+    }
+
     /// A fault that the component itself told of; it goes on.
     pub(super) fn report_symptom(&self, detector: DetectorId, message: String, return_code: u32) {
+        let evidence = Evidence::Exception {
+            callback: self.callback.to_owned(),
+            message,
+            place: None,
+            signal: None,
+            address: None,
+            backtrace: Vec::new(),
+            thread_lost: false,
+        };
+        self.tell(detector, FaultKind::Reported, return_code, evidence);
+    }
+
+    fn tell(&self, detector: DetectorId, kind: FaultKind, return_code: u32, evidence: Evidence) {
         let symptom = Symptom {
             detector,
             incarnation: self.incarnation,
-            kind: FaultKind::Reported,
+            kind,
             return_code,
             at: self.environment.clock.now(),
             runs: true,
-            evidence: Evidence::Exception {
-                callback: self.callback.to_owned(),
-                message,
-                place: None,
-                signal: None,
-                address: None,
-                backtrace: Vec::new(),
-                thread_lost: false,
-            },
+            evidence,
         };
         self.environment
             .observations

@@ -85,7 +85,7 @@ impl VotedInput {
             return None;
         }
         let newest_ns = self.sources.iter().map(|it| it.newest.stamp_ns()).max()?;
-        let oldest_ns = newest_ns.saturating_sub(crate::supervision::nanoseconds(OLDEST_VOTE));
+        let oldest_ns = newest_ns.saturating_sub(crate::clock::nanoseconds(OLDEST_VOTE));
         self.votes.clear();
         let reader = &self.reader;
         self.votes

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use system_model::specification::{PortDirection, PortKind};
 
 use super::Subjects;
-use crate::supervision::{Actuator, Emergency, SafetyGate};
+use crate::supervision::{Actuator, SafetyGate};
 
-/// All actuators. Each has one gate in front of all its data inputs.
-pub(super) fn find(subjects: &Subjects<'_>) -> Emergency {
+/// All actuators of an application. Each has one gate in front of all its data inputs.
+pub(super) fn find(subjects: &Subjects<'_>) -> Vec<Actuator> {
     let rules = subjects.rules.components.iter().enumerate();
     let actuators = rules.filter_map(|(component, rules)| {
         let rule = rules.actuator.as_ref()?;
@@ -18,7 +18,7 @@ pub(super) fn find(subjects: &Subjects<'_>) -> Emergency {
             gate: Arc::new(SafetyGate::default()),
         })
     });
-    Emergency::new(actuators.collect())
+    actuators.collect()
 }
 
 /// Whether a port is one by which commands come in.

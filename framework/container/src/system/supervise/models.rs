@@ -1,8 +1,9 @@
 //! Process-model monitors: samplers at the ports that they name.
 
 use std::sync::Arc;
+use std::time::Duration;
 
-use fault_manager::detection::process_model::{InputMap, Monitor};
+use fault_manager::detection::process_model::{InputMap, Monitor, ResidualMonitor};
 use fault_manager::detection::{NumberReader, UnknownField};
 use fault_manager::{DetectorId, DetectorKind};
 use system_model::data_type::DataType;
@@ -12,7 +13,7 @@ use system_model::rules::{DecisionRule, MonitorRule, RulePort};
 use super::{Subjects, misfit};
 use crate::assembly::AssemblyProblem;
 use crate::component::{InputTap, OutputTap, PortEnd};
-use crate::supervision::{Channel, ModelMonitor, Monitors, Reading, Sampler};
+use crate::supervision::{Channel, ModelMonitor, Monitors, Reading, Reference, Sampler};
 
 /// Every monitor, with samplers at its ports.
 pub(super) fn watch(
@@ -33,50 +34,111 @@ fn monitor(
     number: usize,
     rule: &MonitorRule,
 ) -> Result<Option<ModelMonitor>, Vec<AssemblyProblem>> {
-    let problem = |message, help: &str| vec![misfit(&rule.rule.place, message, help.to_owned())];
-    let wanted = &rule.rule.value.model;
-    let found = subjects.models.iter().find(|(name, _)| name == wanted);
-    let Some((_, model)) = found else {
-        return Err(problem(
-            format!("monitor '{}' has no model '{wanted}'", rule.name),
-            "name a process model's file, beside the rule file or on --search-path",
-        ));
-    };
     let kind = DetectorKind::ProcessModel { monitor: number };
     let mut detectors = subjects.manager.detectors().iter().enumerate();
-    let Some((detector, blamed)) = detectors.find(|(_, detector)| detector.kind == kind) else {
+    let found = detectors.find(|(_, detector)| {
+        detector.kind == kind && subjects.members.contains(&detector.component)
+    });
+    let Some((detector, blamed)) = found else {
         return Ok(None);
     };
+    let (reference, inputs) = reference(subjects, rule)?;
+    let outputs = readings(subjects, rule, &rule.outputs, Channel::Output)?;
+    let status = Arc::clone(&subjects.assembly.statuses[blamed.component]);
+    let method = method(rule.rule.value.method);
     let detector = DetectorId(detector);
-    let watching = Monitor::new(model, &rule.rule.value).map_err(|error| {
+    let monitor = ModelMonitor::new(rule.name.clone(), method, detector, status, reference);
+    for (port, channel, reading) in inputs.into_iter().chain(outputs) {
+        attach(subjects, &port, monitor.sampler(channel, reading));
+    }
+    Ok(Some(monitor))
+}
+
+/// What the process is compared with, a file or a component of the application, and what goes in.
+fn reference(
+    subjects: &Subjects<'_>,
+    rule: &MonitorRule,
+) -> Result<(Reference, Vec<Sampled>), Vec<AssemblyProblem>> {
+    let problem = |message, help: &str| vec![misfit(&rule.rule.place, message, help.to_owned())];
+    let wanted = &rule.rule.value.model;
+    if let Some((_, model)) = subjects.models.iter().find(|(name, _)| name == wanted) {
+        return state_space(subjects, rule, model);
+    }
+    let mut members = subjects.members.clone();
+    let component = members.find(|index| subjects.named(*index) == wanted);
+    let Some(component) = component else {
+        return Err(problem(
+            format!("monitor '{}' has no model '{wanted}'", rule.name),
+            "name a process model's file, beside the rule file or on --search-path, or a component \
+             of the application",
+        ));
+    };
+    // Its outputs bear the names of those that they are compared with.
+    let outputs = rule.outputs.iter().map(|output| RulePort {
+        component,
+        ..output.clone()
+    });
+    let outputs: Vec<RulePort> = outputs.collect();
+    let missing = outputs
+        .iter()
+        .find(|output| subjects.port(component, &output.port).is_none());
+    if let Some(missing) = missing {
+        return Err(problem(
+            format!(
+                "monitor '{}': reference component '{wanted}' has no port '{}' to compare with",
+                rule.name, missing.port
+            ),
+            "its outputs must bear the names of those that they are compared with",
+        ));
+    }
+    let period = rule.outputs.first().map_or(Duration::ZERO, |output| {
+        subjects.specification.components[output.component]
+            .execution
+            .period
+    });
+    let count = outputs.len();
+    let monitor = ResidualMonitor::new(&rule.rule.value, count, period).map_err(|error| {
         problem(
             format!(
-                "monitor '{}' cannot use model '{wanted}': {error}",
+                "monitor '{}' cannot compare with '{wanted}': {error}",
                 rule.name
+            ),
+            "a reference component has a period, and no covariance for chi_square",
+        )
+    })?;
+    let inputs = readings(subjects, rule, &outputs, Channel::Input)?;
+    Ok((Reference::Component(Box::new(monitor), count), inputs))
+}
+
+fn state_space(
+    subjects: &Subjects<'_>,
+    rule: &MonitorRule,
+    model: &ProcessModel,
+) -> Result<(Reference, Vec<Sampled>), Vec<AssemblyProblem>> {
+    let problem = |message, help: &str| vec![misfit(&rule.rule.place, message, help.to_owned())];
+    let monitor = Monitor::new(model, &rule.rule.value).map_err(|error| {
+        problem(
+            format!(
+                "monitor '{}' cannot use model '{}': {error}",
+                rule.name, model.name
             ),
             "see the model's file and the parameters of the monitor",
         )
     })?;
-    if watching.model().outputs() != rule.outputs.len() {
+    if monitor.model().outputs() != rule.outputs.len() {
         return Err(problem(
             format!(
-                "monitor '{}' compares {} outputs, model '{wanted}' has {}",
+                "monitor '{}' compares {} outputs, model '{}' has {}",
                 rule.name,
                 rule.outputs.len(),
-                watching.model().outputs()
+                model.name,
+                monitor.model().outputs()
             ),
             "one <output> for each output of the model, in its order",
         ));
     }
-    let inputs = input_readings(subjects, rule, model, watching.model().inputs())?;
-    let outputs = output_readings(subjects, rule)?;
-    let status = Arc::clone(&subjects.assembly.statuses[blamed.component]);
-    let method = method(rule.rule.value.method);
-    let monitor = ModelMonitor::new(rule.name.clone(), method, detector, status, watching);
-    for (port, channel, reading) in inputs.into_iter().chain(outputs) {
-        attach(subjects, port, monitor.sampler(channel, reading));
-    }
-    Ok(Some(monitor))
+    let inputs = input_readings(subjects, rule, model, monitor.model().inputs())?;
+    Ok((Reference::Model(Box::new(monitor)), inputs))
 }
 
 fn method(rule: DecisionRule) -> &'static str {
@@ -87,14 +149,14 @@ fn method(rule: DecisionRule) -> &'static str {
     }
 }
 
-type Sampled<'rule> = (&'rule RulePort, Channel, Reading);
+type Sampled = (RulePort, Channel, Reading);
 
-fn input_readings<'rule>(
+fn input_readings(
     subjects: &Subjects<'_>,
-    rule: &'rule MonitorRule,
+    rule: &MonitorRule,
     model: &ProcessModel,
     wanted: usize,
-) -> Result<Vec<Sampled<'rule>>, Vec<AssemblyProblem>> {
+) -> Result<Vec<Sampled>, Vec<AssemblyProblem>> {
     let mut readings = Vec::new();
     let mut count = 0;
     for port in &rule.inputs {
@@ -114,7 +176,7 @@ fn input_readings<'rule>(
             let inputs = map.inputs();
             (Reading::Inputs(map), inputs)
         };
-        readings.push((port, Channel::Input(count), reading));
+        readings.push((port.clone(), Channel::Input(count), reading));
         count += inputs;
     }
     if count == wanted {
@@ -131,18 +193,21 @@ fn input_readings<'rule>(
     )])
 }
 
-fn output_readings<'rule>(
+/// One number of each of these ports.
+fn readings(
     subjects: &Subjects<'_>,
-    rule: &'rule MonitorRule,
-) -> Result<Vec<Sampled<'rule>>, Vec<AssemblyProblem>> {
+    rule: &MonitorRule,
+    ports: &[RulePort],
+    channel: fn(usize) -> Channel,
+) -> Result<Vec<Sampled>, Vec<AssemblyProblem>> {
     let mut readings = Vec::new();
-    for (index, port) in rule.outputs.iter().enumerate() {
+    for (index, port) in ports.iter().enumerate() {
         let Some(data_type) = data_type(subjects, port) else {
             continue;
         };
         let reader = NumberReader::compile(data_type, port.field.as_deref(), 0)
             .map_err(|unknown| vec![unknown_field(rule, port, &unknown)])?;
-        readings.push((port, Channel::Output(index), Reading::Number(reader)));
+        readings.push((port.clone(), channel(index), Reading::Number(reader)));
     }
     Ok(readings)
 }

@@ -25,7 +25,9 @@ pub(super) fn watch(
     monitors: &mut Monitors,
     problems: &mut Vec<AssemblyProblem>,
 ) {
-    for (component, rules) in subjects.rules.components.iter().enumerate() {
+    let rules = subjects.rules.components.iter().enumerate();
+    // Those before are another application's, and have been seen to.
+    for (component, rules) in rules.skip(subjects.members.start) {
         let gate = emergency.gate(component);
         if let Some(gate) = &gate {
             shut_in_emergency(subjects, component, gate);

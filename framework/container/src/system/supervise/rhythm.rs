@@ -11,9 +11,13 @@ use system_model::rules::{Arming, HeartbeatRule, OverrunRule};
 use super::Subjects;
 use crate::supervision::{MemoryUse, Monitors, OverrunCount, Subject, WorkDone};
 
-/// A watch for every detector of these kinds; the fault manager has chosen the rule.
+/// A watch for every detector of these kinds in the application; the fault manager has chosen the
+/// rule.
 pub(super) fn watch(subjects: &Subjects<'_>, monitors: &mut Monitors) {
     for (number, detector) in subjects.manager.detectors().iter().enumerate() {
+        if !subjects.members.contains(&detector.component) {
+            continue;
+        }
         let id = DetectorId(number);
         match detector.kind {
             DetectorKind::Heartbeat => watch_work(subjects, id, detector, monitors),

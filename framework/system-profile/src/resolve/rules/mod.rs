@@ -221,6 +221,7 @@ pub(crate) fn check_component(
         file: profile.header.file.clone(),
         components: vec![component],
         connections: Vec::new(),
+        manager_connections: Vec::new(),
         coordination: Vec::new(),
         world: None,
     };
@@ -246,6 +247,7 @@ pub(crate) fn check_system(assembly: &mut Assembly<'_>, file: &Rc<LoadedFile>) {
         file: file.document.path().to_owned(),
         components: Vec::new(),
         connections: Vec::new(),
+        manager_connections: Vec::new(),
         coordination: Vec::new(),
         world: None,
     };

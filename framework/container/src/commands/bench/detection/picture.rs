@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::study::{Curve, Study, quantile_of};
+use super::study::{Curve, Point, Study, quantile_of};
 
 const WIDTH: f64 = 860.0;
 const HEIGHT: f64 = 520.0;
@@ -108,14 +108,14 @@ fn floor(svg: &mut String, study: &Study) {
         }
         let y = y(delay_ms);
         line(svg, [LEFT, y, RIGHT, y], "#000000", dash);
-        let name = format!("first encoder count that differs, {name}");
-        text(svg, RIGHT - 6.0, y + 15.0, "end", &name);
+        let name = format!("first count that differs, {name}");
+        text(svg, RIGHT + 8.0, y + 4.0, "start", &name);
     }
 }
 
 fn draw_curve(svg: &mut String, curve: &Curve, colour: &str) {
     for (quantile, dash) in [(0.5, ""), (0.95, "6 4")] {
-        let points = curve.points.iter().map(|point| {
+        let points = meaningful(curve).iter().map(|point| {
             let alarms = (point.alarms_per_hour * 24.0).clamp(ALARMS_LEAST, ALARMS_MOST);
             (alarms, point.quantile_ms(quantile))
         });
@@ -130,6 +130,14 @@ fn draw_curve(svg: &mut String, curve: &Curve, colour: &str) {
              stroke-dasharray=\"{dash}\"/>"
         );
     }
+}
+
+/// Below the threshold with the most alarms they run into each other, and mean nothing.
+fn meaningful(curve: &Curve) -> &[Point] {
+    let points = &curve.points;
+    let alarms = |index: &usize| points[*index].alarms_per_hour;
+    let most = (0..points.len()).max_by(|one, other| alarms(one).total_cmp(&alarms(other)));
+    &points[most.unwrap_or_default()..]
 }
 
 fn x(alarms: f64) -> f64 {

@@ -155,7 +155,7 @@ fn curve(
     for samples in sane {
         count_alarms(&statistics(&mut monitor, samples), &thresholds, &mut alarms);
     }
-    let mut delays_ms = vec![Vec::with_capacity(faulty.len()); THRESHOLDS];
+    let mut delays_ms = vec![Vec::new(); THRESHOLDS];
     for drive in faulty {
         let statistics = statistics(&mut monitor, &drive.samples);
         for (threshold, delays_ms) in thresholds.iter().zip(&mut delays_ms) {

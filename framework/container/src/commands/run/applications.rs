@@ -1,0 +1,188 @@
+//! The applications of a run: their files read, their rules and injections given to the one that
+//! each is about, and the problems of all files listed together.
+
+use std::path::{Path, PathBuf};
+
+use container::system::Application;
+use system_model::specification::ApplicationSpecification;
+use system_profile::{
+    Document, LoadOptions, Problem, Severity, load_application, load_injections, load_rules,
+};
+
+use super::{Failed, RunArguments, errors_on_terminal, exit_code, models, problems, show};
+
+/// Loads all applications of a run.
+pub(super) fn load(arguments: &RunArguments) -> Result<Vec<Application>, Failed> {
+    let files = (arguments.applications.iter())
+        .chain(&arguments.rules)
+        .chain(&arguments.inject);
+    for file in files {
+        std::fs::File::open(file).map_err(|error| Failed {
+            code: exit_code::FILE,
+            text: format!("{} cannot be read: {error}", file.display()),
+        })?;
+    }
+    let mut reading = Reading {
+        arguments,
+        options: LoadOptions {
+            search_paths: arguments.search_path.clone(),
+            dangling: Severity::Error,
+        },
+        problems: Vec::new(),
+        sound: true,
+    };
+    let specifications: Vec<ApplicationSpecification> = (arguments.applications.iter())
+        .filter_map(|file| reading.application(file))
+        .collect();
+    reading.check_names(&specifications);
+    let mut applications: Vec<Application> = (specifications.iter())
+        .map(|specification| reading.rules_of(specification, &specifications))
+        .collect();
+    if !reading.sound {
+        return Err(not_started(&arguments.applications, &reading.problems));
+    }
+    show(&reading.problems);
+    for application in &mut applications {
+        let (rules, specification) = (&application.rules, &application.specification);
+        application.models = models::load(rules, specification, &arguments.search_path)?;
+    }
+    Ok(applications)
+}
+
+/// The world that the applications drive in, if any; a robot is in one place.
+pub(super) fn world(applications: &[Application]) -> Result<Option<&Path>, Failed> {
+    let specifications = applications.iter().map(|it| &it.specification);
+    let mut worlds = specifications.filter_map(|it| Some((it.name.as_str(), it.world.as_deref()?)));
+    let Some((name, world)) = worlds.next() else {
+        return Ok(None);
+    };
+    let identity = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    match worlds.find(|(_, other)| identity(other) != identity(world)) {
+        None => Ok(Some(world)),
+        Some((other_name, other)) => Err(Failed {
+            code: exit_code::PROFILE,
+            text: format!(
+                "'{name}' drives in {}, '{other_name}' in {}\n  help: applications of one \
+                 container share one world; let both name it, or only one of them",
+                world.display(),
+                other.display()
+            ),
+        }),
+    }
+}
+
+fn not_started(files: &[PathBuf], found: &[Problem]) -> Failed {
+    let names: Vec<String> = files
+        .iter()
+        .map(|file| file.display().to_string())
+        .collect();
+    Failed {
+        code: exit_code::PROFILE,
+        text: format!(
+            "{}\n{} {} not started",
+            problems::render(found, errors_on_terminal()),
+            names.join(", "),
+            if names.len() == 1 { "was" } else { "were" }
+        ),
+    }
+}
+
+/// Files being read.
+struct Reading<'run> {
+    arguments: &'run RunArguments,
+    options: LoadOptions,
+    problems: Vec<Problem>,
+    /// Whether everything read so far can be used.
+    sound: bool,
+}
+
+impl Reading<'_> {
+    fn application(&mut self, file: &Path) -> Option<ApplicationSpecification> {
+        let outcome = load_application(file, &self.options);
+        self.found(outcome.problems);
+        self.sound &= outcome.specification.is_some();
+        outcome.specification
+    }
+
+    /// The application with what is said about it; what is missing has been reported.
+    fn rules_of(
+        &mut self,
+        specification: &ApplicationSpecification,
+        all: &[ApplicationSpecification],
+    ) -> Application {
+        let arguments = self.arguments;
+        let about = |files: &[PathBuf]| -> Vec<PathBuf> {
+            let files = files.iter().cloned();
+            files
+                .filter(|file| is_about(file, specification, all))
+                .collect()
+        };
+        let outcome = load_rules(specification, &about(&arguments.rules), &self.options);
+        self.found(outcome.problems);
+        self.sound &= outcome.rules.is_some();
+        let mut injections = Vec::new();
+        for file in about(&arguments.inject) {
+            let outcome = load_injections(specification, &file);
+            self.found(outcome.problems);
+            self.sound &= outcome.injections.is_some();
+            injections.extend(outcome.injections.unwrap_or_default());
+        }
+        Application {
+            specification: specification.clone(),
+            rules: outcome.rules.unwrap_or_default(),
+            models: Vec::new(),
+            injections,
+        }
+    }
+
+    /// Applications are told apart by their names.
+    fn check_names(&mut self, all: &[ApplicationSpecification]) {
+        for (index, one) in all.iter().enumerate() {
+            if let Some(first) = all[..index].iter().find(|other| other.name == one.name) {
+                let document = Document::open(&one.file);
+                document.report_root(
+                    format!(
+                        "another application of this run is called `{}`, too: {}",
+                        one.name,
+                        first.file.display()
+                    ),
+                    "name each application once, and give each a <name> of its own",
+                );
+                self.sound = false;
+                self.found(document.problems());
+            }
+        }
+    }
+
+    /// Takes problems down, those of a file that several applications refer to once.
+    fn found(&mut self, problems: Vec<Problem>) {
+        for problem in problems {
+            let says_the_same =
+                |known: &Problem| known.place == problem.place && known.message == problem.message;
+            if !self.problems.iter().any(says_the_same) {
+                self.problems.push(problem);
+            }
+        }
+    }
+}
+
+/// Whether a file of rules or injections goes to an application: if it names that, or none at all,
+/// as a system file. One that names no application of the run goes to the first, whose reader
+/// refuses it.
+fn is_about(
+    file: &Path,
+    application: &ApplicationSpecification,
+    all: &[ApplicationSpecification],
+) -> bool {
+    let document = Document::open(file);
+    let name = document
+        .tree()
+        .and_then(|root| root.attribute("application"));
+    match name {
+        Some(name) if all.iter().any(|one| one.name == name) => application.name == name,
+        Some(_) => all
+            .first()
+            .is_some_and(|first| first.name == application.name),
+        None => true,
+    }
+}

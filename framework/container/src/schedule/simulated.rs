@@ -1,0 +1,227 @@
+//! All executors on one thread, in simulated time.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+use system_model::specification::ExecutionKind;
+
+use crate::clock::nanoseconds;
+use crate::component::{ComponentCell, Environment, mark_lost};
+use crate::event_log::Event;
+use crate::executor::Executor;
+use crate::guard::loss::LostThread;
+use crate::lane::{Lane, Work};
+use crate::supervision::Supervisor;
+use crate::world::World;
+
+/// In simulated time a cycle of an executor without a period takes this long; without it two
+/// components that wake each other would stop the clock.
+const SIMULATED_CYCLE_NS: u64 = 1_000;
+
+/// How long a component keeps its executor busy in simulated time, where callbacks themselves take
+/// none: an injected delay, or a hang until it was broken off.
+#[derive(Debug, Default)]
+pub struct BusyTime(AtomicU64);
+
+impl BusyTime {
+    /// The step that is under way takes so much longer.
+    pub fn add(&self, time: Duration) {
+        self.0.fetch_add(nanoseconds(time), Ordering::Relaxed);
+    }
+
+    /// How much longer the steps since the last time took, in nanoseconds.
+    fn take_ns(&self) -> u64 {
+        self.0.swap(0, Ordering::Relaxed)
+    }
+}
+
+/// All executors on one thread, in simulated time: ordered by time, priority, name.
+pub struct Simulated {
+    executors: Vec<Executor>,
+    components: Arc<[Arc<ComponentCell>]>,
+    /// When each is due next; for one without a period, the earliest time it may run again.
+    due_ns: Vec<u64>,
+    /// The one that was running when a thread was lost.
+    running: Option<usize>,
+    /// The one that was carrying out an order then.
+    obeying: Option<usize>,
+    environment: Arc<Environment>,
+    supervisor: Arc<Supervisor>,
+    world: Option<Arc<World>>,
+    end_ns: u64,
+}
+
+impl Simulated {
+    /// Not begun. Ends at `end` of simulated time, or when the robot has reached its target.
+    pub fn new(
+        mut executors: Vec<Executor>,
+        components: Arc<[Arc<ComponentCell>]>,
+        supervisor: Arc<Supervisor>,
+        world: Option<Arc<World>>,
+        end: Option<Duration>,
+    ) -> Self {
+        executors.sort_by(|a, b| (b.priority, &a.name).cmp(&(a.priority, &b.name)));
+        Self {
+            due_ns: vec![0; executors.len()],
+            executors,
+            components,
+            running: None,
+            obeying: None,
+            environment: Arc::clone(supervisor.environment()),
+            supervisor,
+            world,
+            end_ns: end.map_or(u64::MAX, nanoseconds),
+        }
+    }
+
+    /// When an executor wants to run next.
+    fn due(&self, index: usize) -> Option<u64> {
+        let executor = &self.executors[index];
+        let wanted = executor.kind.has_period() || executor.wake.is_pending();
+        wanted.then(|| self.due_ns[index])
+    }
+
+    /// The next executor by time; the order of `executors` decides among equals.
+    fn next(&self) -> Option<(u64, usize)> {
+        let now_ns = self.environment.clock.now_ns();
+        (0..self.executors.len())
+            .filter_map(|index| Some((self.due(index)?.max(now_ns), index)))
+            .min()
+    }
+
+    fn run_executor(&mut self, index: usize, lane: &Lane) {
+        self.running = Some(index);
+        let now_ns = self.environment.clock.now_ns();
+        let executor = &mut self.executors[index];
+        if !executor.is_in_cycle() {
+            executor.wake.take();
+        }
+        while self.executors[index].step(now_ns, lane) {
+            self.serve(lane);
+        }
+        self.running = None;
+        self.finish_cycle(index, now_ns, lane);
+    }
+
+    /// Sets the next release, by the same rule as in real time: a cycle that took longer than its
+    /// period is reported, and the next one is due at once.
+    fn finish_cycle(&mut self, index: usize, now_ns: u64, lane: &Lane) {
+        let executor = &self.executors[index];
+        let end_ns = now_ns + self.environment.busy.take_ns();
+        if !executor.kind.has_period() {
+            self.due_ns[index] = end_ns + SIMULATED_CYCLE_NS;
+            return;
+        }
+        let next_ns = self.due_ns[index] + nanoseconds(executor.period);
+        self.due_ns[index] = next_ns.max(end_ns);
+        if end_ns > next_ns {
+            executor.overran(lane);
+            let overrun = Event::Overrun {
+                executor: executor.name.clone(),
+                cycle: executor.cycles,
+                late_ns: end_ns - next_ns,
+            };
+            self.environment.events.record(now_ns, overrun);
+        }
+    }
+
+    /// Lets the fault manager see what happened, and does at once what it asks.
+    fn serve(&mut self, lane: &Lane) {
+        self.supervisor.attend();
+        while let Some(index) = (self.executors.iter()).position(|one| !one.orders.is_empty()) {
+            self.obeying = Some(index);
+            self.executors[index].obey(&self.supervisor, lane);
+            self.obeying = None;
+            // What kept it busy is over: it goes on with its period.
+            let executor = &self.executors[index];
+            let now_ns = self.environment.clock.now_ns();
+            let end_ns = now_ns + self.environment.busy.take_ns();
+            let next_ns = end_ns + nanoseconds(executor.period);
+            self.due_ns[index] = self.due_ns[index].min(next_ns);
+        }
+    }
+
+    /// Moves time to `time_ns`; false if the run ends before.
+    fn advance(&self, time_ns: u64) -> bool {
+        let time_ns = time_ns.min(self.end_ns);
+        if let Some(world) = &self.world
+            && world.advance_to(Duration::from_nanos(time_ns), &self.environment)
+        {
+            return false;
+        }
+        self.environment.clock.advance_to(time_ns);
+        time_ns < self.end_ns
+    }
+}
+
+impl Work for Simulated {
+    fn run(&mut self, lane: &Lane) {
+        loop {
+            if let Some(index) = self.running {
+                self.run_executor(index, lane);
+                continue;
+            }
+            if lane.is_stopping() {
+                return;
+            }
+            self.serve(lane);
+            let next = self.next();
+            // What time brings comes before what is executed at that time.
+            let tick_ns = self.supervisor.due_ns();
+            if let Some(tick_ns) = tick_ns
+                && next.is_none_or(|(time_ns, _)| tick_ns <= time_ns)
+            {
+                if tick_ns > self.environment.clock.now_ns() && !self.advance(tick_ns) {
+                    return;
+                }
+                self.supervisor.tick();
+                continue;
+            }
+            let Some((time_ns, index)) = next else {
+                // Nothing will ever happen by itself: only the world moves until the end.
+                self.idle_until_end(lane);
+                return;
+            };
+            if time_ns > self.environment.clock.now_ns() && !self.advance(time_ns) {
+                return;
+            }
+            self.run_executor(index, lane);
+        }
+    }
+
+    fn after_loss(&mut self, lost: &LostThread) {
+        let index = self.obeying.take().or(self.running);
+        match index.and_then(|index| self.executors.get_mut(index)) {
+            Some(executor) => executor.after_loss(&self.components, lost, &self.supervisor),
+            None => mark_lost(&self.components, lost, false),
+        }
+    }
+}
+
+impl Simulated {
+    fn idle_until_end(&self, lane: &Lane) {
+        /// Steps in which an idle run goes to its end, so that it can be stopped.
+        const IDLE_STEP_NS: u64 = 100_000_000;
+        if self.end_ns == u64::MAX {
+            return;
+        }
+        while !lane.is_stopping() {
+            let next = self.environment.clock.now_ns().saturating_add(IDLE_STEP_NS);
+            if !self.advance(next) {
+                return;
+            }
+        }
+    }
+}
+
+/// Kinds of executor that run by the clock.
+trait HasPeriod {
+    fn has_period(self) -> bool;
+}
+
+impl HasPeriod for ExecutionKind {
+    fn has_period(self) -> bool {
+        matches!(self, Self::Periodic | Self::PeriodicShared)
+    }
+}

@@ -1,0 +1,107 @@
+//! What time brings: orders that are due, deadlines of the fault manager, looks of monitors,
+//! injected faults.
+
+use std::sync::PoisonError;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
+use fault_manager::Observation;
+
+use super::LOOK_PERIOD;
+use super::supervisor::Supervisor;
+use crate::clock::nanoseconds;
+
+impl Supervisor {
+    /// What time brings: orders that are due, deadlines of the fault manager.
+    pub fn tick(&self) {
+        let now_ns = self.environment.clock.now_ns();
+        self.environment
+            .observations
+            .mature(now_ns, |observation| self.is_of_now(observation));
+        self.inject(now_ns);
+        self.monitors
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .look(Duration::from_nanos(now_ns), &self.environment.observations);
+        let (due, wants_tick) = {
+            let mut core = self.lock();
+            let mut due = Vec::new();
+            core.later.retain(|(time_ns, order)| {
+                let is_due = *time_ns <= now_ns;
+                if is_due {
+                    due.push(order.clone());
+                }
+                !is_due
+            });
+            let wants_tick = core
+                .manager
+                .due()
+                .is_some_and(|due| nanoseconds(due) <= now_ns);
+            (due, wants_tick)
+        };
+        for order in due {
+            self.give(order);
+        }
+        if wants_tick {
+            self.environment.observations.report(Observation::Tick);
+        }
+        self.attend();
+    }
+
+    /// When the next tick is due, in nanoseconds of the container's clock.
+    pub fn due_ns(&self) -> Option<u64> {
+        let core = self.lock();
+        let later = core.later.iter().map(|(time_ns, _)| *time_ns).min();
+        let manager = core.manager.due().map(nanoseconds);
+        let monitors = self
+            .monitors
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .due_ns();
+        let observations = self.environment.observations.due_ns();
+        let injections = self.environment.injections.is_armed().then(|| {
+            let period_ns = nanoseconds(LOOK_PERIOD);
+            (self.injected_ns.load(Ordering::Relaxed) / period_ns + 1) * period_ns
+        });
+        [later, manager, monitors, observations, injections]
+            .into_iter()
+            .flatten()
+            .min()
+    }
+
+    /// Sleeps until something may be due, at most `limit`.
+    pub fn sleep(&self, limit: Duration) {
+        self.wake.sleep(limit);
+        self.wake.take();
+    }
+
+    /// Makes a thread that sleeps look again.
+    pub fn rouse(&self) {
+        self.wake.wake();
+    }
+
+    /// Whether an observation is about an instance that is still there.
+    fn is_of_now(&self, observation: &Observation) -> bool {
+        let Observation::Symptom(symptom) = observation else {
+            return true;
+        };
+        let core = self.lock();
+        let detector = core.manager.detectors().get(symptom.detector.0);
+        let status = detector.and_then(|detector| self.statuses.get(detector.component));
+        status.is_some_and(|status| status.incarnation() == symptom.incarnation)
+    }
+
+    /// Faults that begin and end with time.
+    fn inject(&self, now_ns: u64) {
+        let environment = &self.environment;
+        if !environment.injections.is_armed() {
+            return;
+        }
+        self.injected_ns.store(now_ns, Ordering::Relaxed);
+        let now = Duration::from_nanos(now_ns);
+        let changed = environment
+            .injections
+            .advance(now, environment.world.as_deref());
+        environment.record_injections(&changed);
+    }
+}
