@@ -10,6 +10,13 @@ fn main() {
         "signal",
         "sigprocmask",
         "pthread_sigmask",
+        "malloc",
+        "calloc",
+        "realloc",
+        "free",
+        "posix_memalign",
+        "aligned_alloc",
+        "memalign",
     ] {
         println!("cargo::rustc-link-arg=-Wl,--export-dynamic-symbol={symbol}");
     }

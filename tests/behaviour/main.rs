@@ -15,6 +15,7 @@ mod hangs;
 mod injections;
 mod life_cycle;
 mod manager_ports;
+mod memory;
 mod ports;
 mod readme;
 mod recovery;

@@ -50,6 +50,8 @@ pub struct Component {
     /// Which of the component's libraries it is of: its own (0) or that of a secondary (from 1).
     variant: usize,
     limits: Limits,
+    /// Whether a rule asks how much memory it uses.
+    counts_allocations: bool,
     /// What the limits are by the container's clock, which need not be the machine's.
     nominal: CallLimits,
     /// Where it was when it was taken off.
@@ -86,6 +88,7 @@ impl Component {
             variant: 0,
             limits: CallLimits::default().into(),
             nominal: CallLimits::default(),
+            counts_allocations: false,
             scene: None,
         }
     }
@@ -96,6 +99,12 @@ impl Component {
         let clock = &self.services.environment().clock;
         self.limits = limits.by_clock(clock).into();
         self.nominal = limits;
+    }
+
+    /// From now on its status tells how much memory its callbacks have allocated and not freed.
+    pub fn count_allocations(&mut self) {
+        self.counts_allocations = true;
+        self.guarded.count_allocations();
     }
 
     /// Instance name.
@@ -305,12 +314,20 @@ impl Component {
             limit = self.inject(callback, name).unwrap_or(limit);
         }
         let ending = self.guarded.call(callback, limit, loss, &mut self.services);
+        if self.counts_allocations {
+            self.tell_allocations();
+        }
         match ending {
             Ending::Returned(status) if status.is_success() && !self.services.has_bad_pointer() => {
                 Ok(())
             }
             other => Err(self.judge(other, callback, name)),
         }
+    }
+
+    fn tell_allocations(&self) {
+        let bytes = self.guarded.allocated_bytes();
+        self.status.set_allocated_bytes(bytes);
     }
 
     fn enter_state(&mut self, state: LifeCycleState) {

@@ -11,6 +11,7 @@
 //! lock of the C library that it held.
 #![allow(unsafe_code)] // the whole point: foreign code, stacks, signals
 
+mod allocation;
 mod callback;
 mod code;
 mod copy;
@@ -202,6 +203,23 @@ impl Guarded {
     /// that back. It happens once.
     pub fn inject(&mut self, misbehaviour: Option<Misbehaviour>) {
         self.side.set_injection(misbehaviour);
+    }
+
+    /// From now on what callbacks allocate and do not free is counted.
+    pub fn count_allocations(&mut self) {
+        self.side.count_allocations();
+    }
+
+    /// Bytes that callbacks have allocated and not freed since counting began or
+    /// [`Self::forget_allocations`]; 0 if they have freed more.
+    #[inline]
+    pub fn allocated_bytes(&self) -> u64 {
+        self.side.allocated_bytes()
+    }
+
+    /// What was allocated so far does not count any more.
+    pub fn forget_allocations(&mut self) {
+        self.side.forget_allocations();
     }
 
     /// Where this instance was when `trap` hit it; `None` while it can still be called.

@@ -18,6 +18,8 @@ pub struct ComponentStatus {
     last_fault: Mutex<Option<String>>,
     /// Of an instance that stands by, and is not seen.
     standby: bool,
+    /// Bytes that its callbacks have allocated and not freed, where a rule asks.
+    allocated_bytes: AtomicU64,
     /// Until when it is in a callback that hangs, in nanoseconds of a simulated clock.
     hangs_until_ns: AtomicU64,
 }
@@ -43,6 +45,7 @@ impl ComponentStatus {
             faults: AtomicU64::new(0),
             last_fault: Mutex::new(None),
             standby: false,
+            allocated_bytes: AtomicU64::new(0),
             hangs_until_ns: AtomicU64::new(0),
         }
     }
@@ -106,6 +109,15 @@ impl ComponentStatus {
 
     pub(crate) fn count_overrun(&self) {
         increase(&self.overruns);
+    }
+
+    /// Bytes that callbacks of this incarnation have allocated and not freed; 0 where no rule asks.
+    pub fn allocated_bytes(&self) -> u64 {
+        self.allocated_bytes.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn set_allocated_bytes(&self, bytes: u64) {
+        self.allocated_bytes.store(bytes, Ordering::Relaxed);
     }
 
     /// Faults so far.

@@ -19,7 +19,7 @@ mod time;
 pub use emergency::{Actuator, CONTROLLED_STOP, Emergency, SafetyGate};
 pub use manager_ports::ManagerOutputs;
 pub use models::{Channel, ModelMonitor, Reading, Reference, Sampler};
-pub use monitors::{InputAge, LOOK_PERIOD, Monitors, OverrunCount, Subject, WorkDone};
+pub use monitors::{InputAge, LOOK_PERIOD, MemoryUse, Monitors, OverrunCount, Subject, WorkDone};
 pub use observations::Observations;
 pub use orders::{Order, Orders, Task};
 pub use scenes::Scenes;

@@ -39,7 +39,7 @@ impl Detectors {
             let members = system.applications[application].members.clone();
             for index in members.clone() {
                 detectors.add_defaults(index, &system.components[index].rules);
-                detectors.add_rhythm(index, members.start, &scope.rules, system);
+                detectors.add_conduct(index, members.start, &scope.rules, system);
                 detectors.add_ports(index, &system.components[index].rules);
             }
             detectors.add_helpers(members.start, scope);
@@ -112,8 +112,8 @@ impl Detectors {
     }
 
     /// Overruns and heartbeats: the narrowest rule counts, the component's own before that of its
-    /// executor, its application, its node.
-    fn add_rhythm(&mut self, index: usize, first: usize, rules: &FaultRules, system: &System) {
+    /// executor, its application, its node. Memory is each component's own.
+    fn add_conduct(&mut self, index: usize, first: usize, rules: &FaultRules, system: &System) {
         let component = &system.components[index];
         let executor = rules.executors.iter().find(|rule| {
             let leader = system.components.get(first + rule.first_component);
@@ -130,6 +130,10 @@ impl Detectors {
         if let Some(rule) = component.rules.heartbeat.as_ref().or(inherited) {
             let judged = Some((rule.value.judgement, &rule.place));
             self.add(index, DetectorKind::Heartbeat, judged);
+        }
+        if let Some(rule) = &component.rules.memory {
+            let judged = Some((rule.value.judgement, &rule.place));
+            self.add(index, DetectorKind::Memory, judged);
         }
     }
 

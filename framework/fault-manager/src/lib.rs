@@ -29,6 +29,7 @@ mod correlation;
 pub mod detection;
 mod detectors;
 mod emergency;
+mod evidence;
 mod graph;
 mod handling;
 mod history;
@@ -44,10 +45,9 @@ mod system;
 mod verdict;
 mod wording;
 
+pub use evidence::{Evidence, Number};
 pub use manager::FaultManager;
-pub use observation::{
-    ActionOutcome, Detector, DetectorId, DetectorKind, Evidence, Number, Observation, Symptom,
-};
+pub use observation::{ActionOutcome, Detector, DetectorId, DetectorKind, Observation, Symptom};
 pub use plan::{Action, ActionId, Effect, PlannedAction};
 pub use state::Condition;
 pub use system::Scope;

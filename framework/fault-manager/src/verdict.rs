@@ -4,7 +4,7 @@
 use serde::Serialize;
 use system_model::rules::ComponentSeverity;
 
-use crate::observation::Evidence;
+use crate::evidence::Evidence;
 
 /// Numbers faults from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]

@@ -44,6 +44,8 @@ pub enum FaultKind {
     Overrun,
     /// No work was completed for too long.
     HeartbeatMissed,
+    /// More memory was allocated, and not freed, than the component is allowed.
+    MemoryExceeded,
     /// What the process does differs from what its model says.
     ProcessModel,
     /// A voter's source disagrees with the others.
@@ -75,6 +77,7 @@ impl FaultKind {
             Self::Stuck => "stuck",
             Self::Overrun => "overrun",
             Self::HeartbeatMissed => "heartbeat_missed",
+            Self::MemoryExceeded => "memory_exceeded",
             Self::ProcessModel => "process_model",
             Self::VotingDissent => "voting_dissent",
             Self::RecoveryFailed => "recovery_failed",

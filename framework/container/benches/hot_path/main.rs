@@ -1,9 +1,12 @@
 //! What the container costs on the path that runs every cycle, beside a floor measured in the same
-//! run: guard, ports, executor cycle. Ends with a table of ratios.
+//! run: guard, allocations, ports, executor
+//! cycle. Ends with a table of ratios.
 #![allow(missing_docs, unsafe_code)] // benchmark: calls the raw tables to have a floor
 
+mod allocation;
 mod chain;
 mod guard;
+mod monitored;
 mod ports;
 mod ratios;
 
@@ -18,6 +21,7 @@ fn main() {
         .warm_up_time(Duration::from_millis(200))
         .measurement_time(Duration::from_millis(800));
     guard::bench(&mut criterion);
+    allocation::bench(&mut criterion);
     ports::bench(&mut criterion);
     chain::bench(&mut criterion);
     criterion.final_summary();

@@ -21,6 +21,22 @@ pub fn print() {
         "guard/guarded_call",
         "guard/plain_call",
     );
+    for (what, one, other) in [
+        ("interposed / the library's own", "interposed", "library"),
+        (
+            "in a component, counted / not",
+            "in_component_counted",
+            "in_component",
+        ),
+    ] {
+        let name = |which: &str| format!("allocation/{which}");
+        ratio(
+            &root,
+            &format!("allocation: {what}"),
+            &name(one),
+            &name(other),
+        );
+    }
     for policy in ["last", "fifo"] {
         for size in [64, 4096] {
             for threads in ["same_thread", "across_threads"] {
@@ -56,6 +72,19 @@ pub fn print() {
                 cycle.p99_ns / f64::from(length)
             );
         }
+        monitors(&root, length);
+    }
+}
+
+fn monitors(root: &Path, length: u32) {
+    let chain = |name: &str| figure(root, &format!("cycle/{name}_of_{length}"));
+    if let (Some(with), Some(without)) = (chain("monitored_chain"), chain("chain")) {
+        let more_ns = (with.median_ns - without.median_ns) / f64::from(length);
+        println!(
+            "  {:52} {more_ns:+8.1} ns a component a cycle, ratio {:.2}",
+            format!("chain of {length}: all monitors on"),
+            with.median_ns / without.median_ns
+        );
     }
 }
 

@@ -108,6 +108,9 @@ impl Factory {
         let mut component = Component::new(guarded, services, status, period);
         let limits = CallLimits::by_rules(&self.rules, &specification.execution);
         component.set_limits(limits);
+        if self.rules.memory.is_some() {
+            component.count_allocations();
+        }
         Ok(component)
     }
 }

@@ -108,7 +108,7 @@ impl Component {
         self.services.take_over(&mut predecessor.services);
         self.checkpoints = predecessor.checkpoints.take();
         self.status = Arc::clone(&predecessor.status);
-        self.begin_incarnation(incarnation);
+        self.enter_incarnation(incarnation);
     }
 
     /// Which instance of this name it is, counted from 1.
@@ -199,8 +199,13 @@ impl Component {
         )
     }
 
-    /// From now on this is another incarnation, of the same instance or of one that took its place.
+    /// From now on this same instance is another incarnation.
     pub fn begin_incarnation(&mut self, incarnation: u32) {
+        self.guarded.forget_allocations();
+        self.enter_incarnation(incarnation);
+    }
+
+    fn enter_incarnation(&mut self, incarnation: u32) {
         self.status.set_incarnation(incarnation);
         self.services.begin_incarnation(incarnation);
     }

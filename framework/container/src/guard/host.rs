@@ -78,6 +78,11 @@ pub(super) struct HostSide {
     /// Whether the component has tried to change signals that the guard needs.
     meddled: Cell<bool>,
     exit: Cell<Exit>,
+    /// Whether allocations are counted.
+    counts: Cell<bool>,
+    /// Bytes allocated by callbacks less bytes freed by them. Goes round: of both an unlimited
+    /// number may pass, and memory that was allocated before may be freed.
+    allocated: Cell<usize>,
     base: usize,
     limit: usize,
 }
@@ -105,6 +110,8 @@ impl HostSide {
             injection: Cell::new(None),
             meddled: Cell::new(false),
             exit: Cell::new(Exit::Abort),
+            counts: Cell::new(false),
+            allocated: Cell::new(0),
             base: 0,
             limit: 0,
         }
@@ -169,6 +176,33 @@ impl HostSide {
 
     pub(super) fn take_injection(&self) -> Option<Misbehaviour> {
         self.injection.take()
+    }
+
+    pub(super) fn count_allocations(&self) {
+        self.counts.set(true);
+    }
+
+    /// Whether what the caller allocates is this component's: not what a request allocates that is
+    /// answered here.
+    #[inline]
+    pub(super) fn counts_allocations(&self) -> bool {
+        self.counts.get() && !self.is_answering() && self.called_on_own_stack()
+    }
+
+    #[inline]
+    pub(super) fn charge(&self, freed: usize, allocated: usize) {
+        let before = self.allocated.get();
+        self.allocated
+            .set(before.wrapping_sub(freed).wrapping_add(allocated));
+    }
+
+    pub(super) fn allocated_bytes(&self) -> u64 {
+        let net = self.allocated.get().cast_signed();
+        u64::try_from(net).unwrap_or(0)
+    }
+
+    pub(super) fn forget_allocations(&self) {
+        self.allocated.set(0);
     }
 
     pub(super) fn request(&self) -> &Request {

@@ -1,4 +1,5 @@
-//! What is looked at from time to time: age of data, completed work, overruns, process models.
+//! What is looked at from time to time: age of data, completed work, overruns, memory, process
+//! models.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -18,6 +19,9 @@ use crate::status::ComponentStatus;
 /// no more than that to its delay; a look at ten components takes a microsecond.
 pub const LOOK_PERIOD: Duration = Duration::from_millis(5);
 
+/// Bytes of the kilobyte of the rules.
+const KILOBYTE: u64 = 1024;
+
 /// Everything that is looked at.
 #[derive(Default)]
 pub struct Monitors {
@@ -27,6 +31,8 @@ pub struct Monitors {
     pub heartbeats: Vec<WorkDone>,
     /// Overruns.
     pub overruns: Vec<OverrunCount>,
+    /// Memory.
+    pub memories: Vec<MemoryUse>,
     /// Process models.
     pub models: Vec<ModelMonitor>,
     due_ns: u64,
@@ -67,6 +73,14 @@ pub struct OverrunCount {
     pub subject: Subject,
     /// The watch.
     pub overruns: Overruns,
+}
+
+/// Memory that a component's callbacks have allocated and not freed.
+pub struct MemoryUse {
+    /// Who uses it.
+    pub subject: Subject,
+    /// So much is allowed, in bytes.
+    pub limit_bytes: u64,
 }
 
 impl Subject {
@@ -124,6 +138,7 @@ impl Monitors {
         let nothing = self.inputs.is_empty()
             && self.heartbeats.is_empty()
             && self.overruns.is_empty()
+            && self.memories.is_empty()
             && self.models.is_empty();
         (!nothing).then_some(self.due_ns)
     }
@@ -145,6 +160,9 @@ impl Monitors {
         }
         for overruns in &mut self.overruns {
             overruns.look(now, observations);
+        }
+        for memory in &mut self.memories {
+            memory.look(now, observations);
         }
         for model in &mut self.models {
             model.poll(observations);
@@ -223,6 +241,27 @@ impl OverrunCount {
                 )),
             });
         self.subject.report(finding, now, observations);
+    }
+}
+
+impl MemoryUse {
+    fn look(&mut self, now: Duration, observations: &Observations) {
+        if !self.subject.goes_on(now) {
+            return;
+        }
+        let used_bytes = self.subject.status.allocated_bytes();
+        let finding = if used_bytes > self.limit_bytes {
+            Finding::Violated((
+                FaultKind::MemoryExceeded,
+                Evidence::Memory {
+                    used_kb: used_bytes.div_ceil(KILOBYTE),
+                    limit_kb: self.limit_bytes / KILOBYTE,
+                },
+            ))
+        } else {
+            Finding::Passed
+        };
+        self.subject.report(Some(finding), now, observations);
     }
 }
 

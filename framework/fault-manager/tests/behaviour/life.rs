@@ -7,7 +7,7 @@ use fault_manager::{
 };
 use system_model::fault::FaultKind;
 use system_model::rules::{
-    Arming, ComponentSeverity, Confirmation, HeartbeatRule, Judgement, OverrunRule,
+    Arming, ComponentSeverity, Confirmation, HeartbeatRule, Judgement, MemoryRule, OverrunRule,
 };
 
 use crate::support::{Bench, application, located};
@@ -189,6 +189,10 @@ fn everything_has_its_detectors() {
         missed: 3,
         judgement: Judgement::default(),
     }));
+    scope.rules.components[0].memory = Some(located(MemoryRule {
+        limit_bytes: 1 << 20,
+        judgement: Judgement::default(),
+    }));
     let manager = FaultManager::new(vec![application("other", &["clock"]), scope]);
     let found: Vec<(usize, DetectorKind)> = manager
         .detectors()
@@ -209,6 +213,9 @@ fn everything_has_its_detectors() {
         }
         if component > 0 {
             expected.push((component, DetectorKind::Heartbeat));
+        }
+        if component == 1 {
+            expected.push((component, DetectorKind::Memory));
         }
     }
     assert_eq!(found, expected);

@@ -211,6 +211,19 @@ pub struct OverrunRule {
     pub judgement: Judgement,
 }
 
+/// `memory`: what a component has allocated in its callbacks and not freed has a bound.
+///
+/// Counted is what the C library's allocator gives to callbacks of the component and gets back from
+/// them. What threads of the component's own allocate or free is not seen: the rule is not for a
+/// component that hands memory over to them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MemoryRule {
+    /// So many bytes, counted from the beginning of the incarnation, are no symptom; at least 1.
+    pub limit_bytes: u64,
+    /// How symptoms become a fault.
+    pub judgement: Judgement,
+}
+
 /// `heartbeat`: work is completed in every period.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct HeartbeatRule {

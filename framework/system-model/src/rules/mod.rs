@@ -12,8 +12,8 @@ mod monitor;
 pub use detection::{
     Arming, Confirmation, DEFAULT_DEADLINE_PERIODS, DEFAULT_HEARTBEATS_MISSED,
     DEFAULT_PERIODLESS_DEADLINE, DEFAULT_STARTUP, ExceptionClass, ExceptionRule, FaultEventRule,
-    FreshnessRule, HeartbeatRule, Judgement, OverrunRule, RateOfChangeRule, ReturnCodes, StuckRule,
-    ValidityRule, WatchdogRule,
+    FreshnessRule, HeartbeatRule, Judgement, MemoryRule, OverrunRule, RateOfChangeRule,
+    ReturnCodes, StuckRule, ValidityRule, WatchdogRule,
 };
 pub use diagnosis::{
     ApplicationSeverity, ComponentSeverity, DependencyRule, DependencySeverity, Entity, Provider,
@@ -74,6 +74,8 @@ pub struct ComponentRules {
     pub overrun: Option<Located<OverrunRule>>,
     /// Liveness of the work itself.
     pub heartbeat: Option<Located<HeartbeatRule>>,
+    /// Memory that is allocated and not freed.
+    pub memory: Option<Located<MemoryRule>>,
     /// Rules of its ports; a port without rules has no entry.
     pub ports: Vec<PortRules>,
     /// Recovery in place.

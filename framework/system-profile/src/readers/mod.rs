@@ -40,7 +40,7 @@ pub const PROFILE_ROOTS: [&str; 13] = [
 
 /// Elements of the fault-tolerance dialect. They may stand inline in profiles, and are read
 /// together with the rule files, not here.
-pub(crate) const FAULT_TOLERANCE: [&str; 27] = [
+pub(crate) const FAULT_TOLERANCE: [&str; 28] = [
     "actuator",
     "adapt",
     "backup",
@@ -55,6 +55,7 @@ pub(crate) const FAULT_TOLERANCE: [&str; 27] = [
     "handle",
     "heartbeat",
     "isolation",
+    "memory",
     "monitor",
     "overrun",
     "process_model",

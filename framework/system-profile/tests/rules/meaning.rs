@@ -75,6 +75,7 @@ fn rules_of_components() {
             <fault_event name='too_hot' severity='stop'/>
             <watchdog deadline='10ms' startup='2s'/><overrun tolerated='3' within='1s'/>
             <heartbeat period='100' missed='2'/>
+            <memory limit_kb='64' severity='stop' latch='true'><confirm count='3'/></memory>
             <resurrect><reset>on</reset><backup persist='true'>40</backup></resurrect>
             <fault window='10s' backoff='5' retry_max='2'><severity>global</severity></fault>
             <recovery deadline='20'/><isolation group='drive'>process</isolation>
@@ -101,6 +102,10 @@ fn rules_of_components() {
     assert_eq!(motor.confirmation(&watchdog.judgement).count, 2);
     assert_eq!(motor.overrun.as_ref().unwrap().value.tolerated, 3);
     assert_eq!(motor.heartbeat.as_ref().unwrap().value.missed, 2);
+    let memory = motor.memory.as_ref().unwrap().value;
+    assert_eq!(memory.limit_bytes, 64 * 1024);
+    assert_eq!(memory.judgement.severity, Some(ComponentSeverity::Stop));
+    assert!(memory.judgement.latched && motor.confirmation(&memory.judgement).count == 3);
     let resurrect = motor.resurrect.as_ref().unwrap().value;
     assert!(resurrect.reset && resurrect.persist);
     assert_eq!(resurrect.backup, Some(milliseconds(40)));

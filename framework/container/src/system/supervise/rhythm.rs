@@ -1,4 +1,4 @@
-//! Heartbeats and overruns.
+//! Heartbeats, overruns, memory.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -9,9 +9,9 @@ use system_model::profile::Located;
 use system_model::rules::{Arming, HeartbeatRule, OverrunRule};
 
 use super::Subjects;
-use crate::supervision::{Monitors, OverrunCount, Subject, WorkDone};
+use crate::supervision::{MemoryUse, Monitors, OverrunCount, Subject, WorkDone};
 
-/// A watch for every detector of the two kinds in the application; the fault manager has chosen the
+/// A watch for every detector of these kinds in the application; the fault manager has chosen the
 /// rule.
 pub(super) fn watch(subjects: &Subjects<'_>, monitors: &mut Monitors) {
     for (number, detector) in subjects.manager.detectors().iter().enumerate() {
@@ -22,6 +22,7 @@ pub(super) fn watch(subjects: &Subjects<'_>, monitors: &mut Monitors) {
         match detector.kind {
             DetectorKind::Heartbeat => watch_work(subjects, id, detector, monitors),
             DetectorKind::Overrun => watch_overruns(subjects, id, detector, monitors),
+            DetectorKind::Memory => watch_memory(subjects, id, detector, monitors),
             _ => {}
         }
     }
@@ -74,6 +75,21 @@ fn watch_overruns(
         monitors.overruns.push(OverrunCount {
             subject: subject(subjects, id, detector),
             overruns: Overruns::new(rule, 0),
+        });
+    }
+}
+
+fn watch_memory(
+    subjects: &Subjects<'_>,
+    id: DetectorId,
+    detector: &Detector,
+    monitors: &mut Monitors,
+) {
+    let own = subjects.rules_of(detector.component);
+    if let Some(rule) = own.and_then(|rules| rules.memory.as_ref()) {
+        monitors.memories.push(MemoryUse {
+            subject: subject(subjects, id, detector),
+            limit_bytes: rule.value.limit_bytes,
         });
     }
 }

@@ -1,11 +1,10 @@
-//! The elements that say what a symptom is.
+//! The elements that say which data, exceptions and reports are a symptom.
 
 use system_model::fault::FaultKind;
 use system_model::profile::Located;
 use system_model::rules::{
-    Arming, Confirmation, DEFAULT_HEARTBEATS_MISSED, DEFAULT_STARTUP, ExceptionClass,
-    ExceptionRule, FaultEventRule, FreshnessRule, HeartbeatRule, Judgement, OverrunRule,
-    RateOfChangeRule, ReturnCodes, SafeValue, StuckRule, ValidityRule, WatchdogRule,
+    Arming, Confirmation, ExceptionClass, ExceptionRule, FaultEventRule, FreshnessRule, Judgement,
+    RateOfChangeRule, ReturnCodes, SafeValue, StuckRule, ValidityRule,
 };
 
 use super::diagnosis::COMPONENT_SEVERITIES;
@@ -252,47 +251,4 @@ pub(super) fn fault_events(node: &Node<'_>) -> Vec<Located<FaultEventRule>> {
         name.map(|_| located(&node, rule))
     });
     rules.collect()
-}
-
-/// `watchdog`.
-pub(super) fn watchdog(node: &Node<'_>) -> Option<Located<WatchdogRule>> {
-    let node = node.child("watchdog")?;
-    let time = |name| setting(&node, name).and_then(|value| positive_duration(&value));
-    let rule = WatchdogRule {
-        deadline: time("deadline"),
-        startup: time("startup").unwrap_or(DEFAULT_STARTUP),
-        judgement: judgement(&node),
-    };
-    node.finish();
-    Some(located(&node, rule))
-}
-
-/// `overrun`.
-pub(super) fn overrun(node: &Node<'_>) -> Option<Located<OverrunRule>> {
-    let node = node.child("overrun")?;
-    let tolerated = required(&node, "tolerated").and_then(|value| count(&value, 0));
-    let within = required(&node, "within").and_then(|value| positive_duration(&value));
-    let judgement = judgement(&node);
-    node.finish();
-    let rule = OverrunRule {
-        tolerated: tolerated?,
-        within: within?,
-        judgement,
-    };
-    Some(located(&node, rule))
-}
-
-/// `heartbeat`.
-pub(super) fn heartbeat(node: &Node<'_>) -> Option<Located<HeartbeatRule>> {
-    let node = node.child("heartbeat")?;
-    let period = required(&node, "period").and_then(|value| positive_duration(&value));
-    let missed = setting(&node, "missed").map(|value| count(&value, 1));
-    let judgement = judgement(&node);
-    node.finish();
-    let rule = HeartbeatRule {
-        period: period?,
-        missed: missed.unwrap_or(Some(DEFAULT_HEARTBEATS_MISSED))?,
-        judgement,
-    };
-    Some(located(&node, rule))
 }

@@ -1,6 +1,7 @@
 //! `fault_rules`, and the same elements where they stand inline in profiles: each rule typed, names
 //! as written. What the names mean is found out by `resolve::rules`.
 
+mod conduct;
 mod declared;
 mod detection;
 mod diagnosis;
@@ -98,9 +99,10 @@ pub(crate) fn component_elements(node: &Node<'_>, name: &Located<String>) -> Dec
         confirmation: detection::confirmation_rule(node),
         exceptions: detection::exceptions(node),
         fault_events: detection::fault_events(node),
-        watchdog: detection::watchdog(node),
-        overrun: detection::overrun(node),
-        heartbeat: detection::heartbeat(node),
+        watchdog: conduct::watchdog(node),
+        overrun: conduct::overrun(node),
+        heartbeat: conduct::heartbeat(node),
+        memory: conduct::memory(node),
         ports: Vec::new(),
         resurrect: handling::resurrect(node),
         fault,
@@ -164,8 +166,8 @@ pub(crate) fn composite_elements(
 fn executor(node: &Node<'_>) -> DeclaredExecutor {
     let executor = DeclaredExecutor {
         name: required_attribute(node, "name"),
-        overrun: detection::overrun(node),
-        heartbeat: detection::heartbeat(node),
+        overrun: conduct::overrun(node),
+        heartbeat: conduct::heartbeat(node),
     };
     node.finish();
     executor
@@ -173,7 +175,7 @@ fn executor(node: &Node<'_>) -> DeclaredExecutor {
 
 fn network_node(node: &Node<'_>) -> Option<(Located<String>, Located<HeartbeatRule>)> {
     let name = required_attribute(node, "name");
-    let heartbeat = detection::heartbeat(node);
+    let heartbeat = conduct::heartbeat(node);
     node.finish();
     Some((name, heartbeat?))
 }
@@ -192,7 +194,7 @@ pub(crate) fn application_elements(node: &Node<'_>) -> DeclaredApplication {
     let (fault, secondaries) = handling::fault(node);
     DeclaredApplication {
         name: None,
-        heartbeat: detection::heartbeat(node),
+        heartbeat: conduct::heartbeat(node),
         fault,
         secondaries,
         dependencies: Vec::new(),

@@ -110,6 +110,7 @@ impl<'a> Combine<'a> {
         self.slot("watchdog", &mut older.watchdog, newer.watchdog);
         self.slot("overrun", &mut older.overrun, newer.overrun);
         self.slot("heartbeat", &mut older.heartbeat, newer.heartbeat);
+        self.slot("memory", &mut older.memory, newer.memory);
         self.slot("resurrect", &mut older.resurrect, newer.resurrect);
         self.slot("fault", &mut older.fault, newer.fault);
         self.slot("recovery", &mut older.recovery, newer.recovery);
