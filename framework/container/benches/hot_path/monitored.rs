@@ -12,7 +12,7 @@ use container::executor::Executor;
 use container::port::Newest;
 use container::status::ComponentStatus;
 use container::supervision::{
-    Channel, InputAge, MemoryUse, ModelMonitor, Monitors, Reading, Subject, WorkDone,
+    Channel, InputAge, MemoryUse, ModelMonitor, Monitors, Reading, Reference, Subject, WorkDone,
 };
 use fault_manager::DetectorId;
 use fault_manager::detection::NumberReader;
@@ -198,5 +198,11 @@ fn process_model(status: &Arc<ComponentStatus>) -> ModelMonitor {
     };
     let monitor = Monitor::new(&model, &rule).expect("a sound model");
     let status = Arc::clone(status);
-    ModelMonitor::new("link".to_owned(), "window", DETECTOR, status, monitor)
+    ModelMonitor::new(
+        "link".to_owned(),
+        "window",
+        DETECTOR,
+        status,
+        Reference::Model(Box::new(monitor)),
+    )
 }
