@@ -1,6 +1,5 @@
 //! Every fault that can be injected is detected, judged and handled by a rule; what happens without
-//! any rule is as sensible as can be. What no detector can see is a leak: it changes no datum, no
-//! answer and no rhythm.
+//! any rule is as sensible as can be. A leak is seen by a rule about memory alone: see `memory`.
 
 mod callbacks;
 mod data;
@@ -66,9 +65,9 @@ fn in_the_handling_itself_climb_the_ladder() {
     }
 }
 
-/// No rule is about memory: the component goes on, and so does everything else.
+/// Without a rule about memory the component goes on, and so does everything else.
 #[test]
-fn a_leak_changes_nothing() {
+fn a_leak_changes_nothing_without_a_rule() {
     let outcome = application()
         .injections("<inject component='counter' fault='leak' bytes='4096'/>")
         .simulate("1s")
