@@ -12,7 +12,7 @@ use container::executor::Executor;
 use container::port::Newest;
 use container::status::ComponentStatus;
 use container::supervision::{
-    Channel, InputAge, MemoryUse, ModelMonitor, Monitors, Reading, Subject, WorkDone,
+    Channel, InputAge, MemoryUse, ModelMonitor, Monitors, Reading, Reference, Subject, WorkDone,
 };
 use fault_manager::DetectorId;
 use fault_manager::detection::NumberReader;
@@ -197,6 +197,7 @@ fn process_model(status: &Arc<ComponentStatus>) -> ModelMonitor {
         judgement: Judgement::default(),
     };
     let monitor = Monitor::new(&model, &rule).expect("a sound model");
+    let reference = Reference::Model(Box::new(monitor));
     let status = Arc::clone(status);
-    ModelMonitor::new("link".to_owned(), "window", DETECTOR, status, monitor)
+    ModelMonitor::new("link".to_owned(), "window", DETECTOR, status, reference)
 }
