@@ -10,11 +10,12 @@ mod monitored;
 mod ports;
 mod ratios;
 
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 use criterion::Criterion;
 
 fn main() {
+    let start = SystemTime::now();
     let mut criterion = Criterion::default()
         .configure_from_args()
         .sample_size(50)
@@ -25,5 +26,5 @@ fn main() {
     ports::bench(&mut criterion);
     chain::bench(&mut criterion);
     criterion.final_summary();
-    ratios::print();
+    ratios::print(start);
 }

@@ -197,12 +197,7 @@ fn process_model(status: &Arc<ComponentStatus>) -> ModelMonitor {
         judgement: Judgement::default(),
     };
     let monitor = Monitor::new(&model, &rule).expect("a sound model");
+    let reference = Reference::Model(Box::new(monitor));
     let status = Arc::clone(status);
-    ModelMonitor::new(
-        "link".to_owned(),
-        "window",
-        DETECTOR,
-        status,
-        Reference::Model(Box::new(monitor)),
-    )
+    ModelMonitor::new("link".to_owned(), "window", DETECTOR, status, reference)
 }

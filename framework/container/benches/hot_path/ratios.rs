@@ -1,6 +1,7 @@
 //! The ratios that matter, from the measurements of this run.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::time::SystemTime;
 
 /// Median and 99th percentile of one benchmark, in nanoseconds.
 struct Figure {
@@ -8,15 +9,22 @@ struct Figure {
     p99_ns: f64,
 }
 
-/// Prints the table.
-pub fn print() {
+/// Where criterion left what it measured, and since when that is of this run.
+struct Run {
+    root: PathBuf,
+    since: SystemTime,
+}
+
+/// Prints the table: of what was measured since then, not what earlier runs have left.
+pub fn print(since: SystemTime) {
     let Some(root) = results() else {
         println!("no measurements to compare");
         return;
     };
+    let run = &Run { root, since };
     println!("\nRatios of this run (medians; p99 over criterion's samples)");
     difference(
-        &root,
+        run,
         "guard: guarded call over plain call",
         "guard/guarded_call",
         "guard/plain_call",
@@ -31,7 +39,7 @@ pub fn print() {
     ] {
         let name = |which: &str| format!("allocation/{which}");
         ratio(
-            &root,
+            run,
             &format!("allocation: {what}"),
             &name(one),
             &name(other),
@@ -43,19 +51,19 @@ pub fn print() {
                 let name = |queue: &str| format!("ports/{policy}_{queue}_{size}_{threads}");
                 let what = format!("{policy} {size} B {}", threads.replace('_', " "));
                 ratio(
-                    &root,
+                    run,
                     &format!("{what}: port / bare queue"),
                     &name("port"),
                     &name("bare"),
                 );
                 ratio(
-                    &root,
+                    run,
                     &format!("{what}: port / rtrb"),
                     &name("port"),
                     &name("rtrb"),
                 );
                 ratio(
-                    &root,
+                    run,
                     &format!("{what}: port / crossbeam"),
                     &name("port"),
                     &name("crossbeam"),
@@ -64,7 +72,7 @@ pub fn print() {
         }
     }
     for length in [2u32, 10] {
-        if let Some(cycle) = figure(&root, &format!("cycle/chain_of_{length}")) {
+        if let Some(cycle) = figure(run, &format!("cycle/chain_of_{length}")) {
             println!(
                 "  {:52} {:8.1} ns a component (p99 {:.1})",
                 format!("chain of {length}: executor cycle"),
@@ -72,12 +80,12 @@ pub fn print() {
                 cycle.p99_ns / f64::from(length)
             );
         }
-        monitors(&root, length);
+        monitors(run, length);
     }
 }
 
-fn monitors(root: &Path, length: u32) {
-    let chain = |name: &str| figure(root, &format!("cycle/{name}_of_{length}"));
+fn monitors(run: &Run, length: u32) {
+    let chain = |name: &str| figure(run, &format!("cycle/{name}_of_{length}"));
     if let (Some(with), Some(without)) = (chain("monitored_chain"), chain("chain")) {
         let more_ns = (with.median_ns - without.median_ns) / f64::from(length);
         println!(
@@ -88,8 +96,8 @@ fn monitors(root: &Path, length: u32) {
     }
 }
 
-fn ratio(root: &Path, what: &str, one: &str, other: &str) {
-    if let (Some(one), Some(other)) = (figure(root, one), figure(root, other)) {
+fn ratio(run: &Run, what: &str, one: &str, other: &str) {
+    if let (Some(one), Some(other)) = (figure(run, one), figure(run, other)) {
         println!(
             "  {what:52} {:8.2}     ({:.1} ns p99 {:.1} / {:.1} ns p99 {:.1})",
             one.median_ns / other.median_ns,
@@ -101,8 +109,8 @@ fn ratio(root: &Path, what: &str, one: &str, other: &str) {
     }
 }
 
-fn difference(root: &Path, what: &str, one: &str, other: &str) {
-    if let (Some(one), Some(other)) = (figure(root, one), figure(root, other)) {
+fn difference(run: &Run, what: &str, one: &str, other: &str) {
+    if let (Some(one), Some(other)) = (figure(run, one), figure(run, other)) {
         println!(
             "  {what:52} {:+8.1} ns  ({:.1} ns p99 {:.1} / {:.1} ns p99 {:.1})",
             one.median_ns - other.median_ns,
@@ -115,8 +123,12 @@ fn difference(root: &Path, what: &str, one: &str, other: &str) {
 }
 
 /// The samples of a benchmark: total times over numbers of iterations.
-fn figure(root: &Path, name: &str) -> Option<Figure> {
-    let text = std::fs::read(root.join(name).join("new/sample.json")).ok()?;
+fn figure(run: &Run, name: &str) -> Option<Figure> {
+    let file = run.root.join(name).join("new/sample.json");
+    if file.metadata().ok()?.modified().ok()? < run.since {
+        return None;
+    }
+    let text = std::fs::read(file).ok()?;
     let sample: serde_json::Value = serde_json::from_slice(&text).ok()?;
     let numbers = |key: &str| -> Option<Vec<f64>> {
         sample
