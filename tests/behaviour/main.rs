@@ -19,6 +19,7 @@ mod memory;
 mod ports;
 mod readme;
 mod recovery;
+mod reference_model;
 mod reference_robot;
 mod scenarios;
 mod services;
