@@ -55,3 +55,22 @@ fn a_refusal_in_c_is_told_in_its_own_words() {
         &["share must be above 0, at most 1", "402 INPUT_OUT_OF_RANGE"],
     );
 }
+
+#[test]
+fn data_of_the_wrong_size_are_a_fault_of_who_names_them() {
+    let application = chain().rules(
+        "<component name='filter'><exception armed='always' severity='ignore'/></component>",
+    );
+    c_component(application.folder(), "low_pass.c", "low_pass", &[]);
+    let outcome = application.simulate("30ms").ended_well();
+    let verdicts = outcome.verdicts();
+    let sizes = verdicts
+        .iter()
+        .filter(|verdict| verdict["kind"] == "wrong_size" && verdict["component"] == "filter")
+        .map(|verdict| &verdict["evidence"]["size"]);
+    let named: Vec<_> = sizes
+        .map(|size| (size["port"].as_str(), size["size"].as_u64()))
+        .collect();
+    assert_eq!(named, [(Some("smooth"), Some(4))], "{verdicts:?}");
+    assert_eq!(outcome.application()["state"], "ACTIVE");
+}
