@@ -43,15 +43,16 @@ pub type Newest = CachePadded<AtomicU64>;
 /// after that it is the datum.
 pub const MOST_DEATHS: u32 = 2;
 
-/// What both ends share; hardly ever written.
+/// What both ends share.
 #[derive(Debug, Default)]
 struct Shared {
     /// Dropped by the writer, because the queue was full.
     overwritten: AtomicU64,
     /// Dropped by the reader, because its stack was full.
     forgotten: AtomicU64,
-    /// What older incarnations of the writer have sent is not delivered any more.
-    accepted: AtomicU32,
+    /// What older incarnations of the writer have sent is not delivered any more. Read with every
+    /// datum, so not on the line of the counters, which the other side may be writing.
+    accepted: CachePadded<AtomicU32>,
 }
 
 /// What becomes of a datum whose reader died.
