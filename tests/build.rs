@@ -1,24 +1,11 @@
 //! Exports the functions that the guard interposes, so that component libraries bind to them.
 
+include!("../framework/container/exported_symbols.rs");
+
 fn main() {
-    for symbol in [
-        "abort",
-        "exit",
-        "quick_exit",
-        "_exit",
-        "sigaction",
-        "signal",
-        "sigprocmask",
-        "pthread_sigmask",
-        "malloc",
-        "calloc",
-        "realloc",
-        "free",
-        "posix_memalign",
-        "aligned_alloc",
-        "memalign",
-    ] {
+    for symbol in EXPORTED_SYMBOLS {
         println!("cargo::rustc-link-arg=-Wl,--export-dynamic-symbol={symbol}");
     }
     println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-changed=../framework/container/exported_symbols.rs");
 }

@@ -69,3 +69,23 @@ pub struct Callbacks {
         ) -> Status,
     >,
 }
+
+impl Callbacks {
+    /// All null: to be filled in.
+    pub const NONE: Self = Self {
+        create: None,
+        destroy_instance: None,
+        on_initialize: None,
+        on_start: None,
+        on_stop: None,
+        on_reset: None,
+        on_error: None,
+        on_recover: None,
+        on_destroy: None,
+        on_execute: None,
+        on_updated: None,
+        on_event: None,
+        on_period_changed: None,
+        on_call: None,
+    };
+}

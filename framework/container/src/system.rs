@@ -211,14 +211,7 @@ impl System {
             world_thread.stop();
         }
         self.shut_down(remaining(deadline).max(STOP_LIMIT / 3));
-        let events_lost = self.environment.events.lost();
-        self.environment.events.record(
-            self.environment.clock.now_ns(),
-            Event::RunStopped {
-                reason,
-                events_lost,
-            },
-        );
+        self.record_end(reason);
         (summary, self.close().err())
     }
 

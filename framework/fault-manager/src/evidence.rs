@@ -131,13 +131,6 @@ pub enum Evidence {
         /// What all sources said, in their order; null for a source that said nothing usable.
         votes: Vec<Option<Number>>,
     },
-    /// A recovery that failed or took too long.
-    Recovery {
-        /// What was tried.
-        action: String,
-        /// Why it is over.
-        reason: String,
-    },
 }
 
 /// A number that may be no number: JSON has none for NaN and the infinities, they are written as

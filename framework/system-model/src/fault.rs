@@ -50,8 +50,6 @@ pub enum FaultKind {
     ProcessModel,
     /// A voter's source disagrees with the others.
     VotingDissent,
-    /// A recovery did not succeed, or not in time.
-    RecoveryFailed,
 }
 
 impl FaultKind {
@@ -80,7 +78,6 @@ impl FaultKind {
             Self::MemoryExceeded => "memory_exceeded",
             Self::ProcessModel => "process_model",
             Self::VotingDissent => "voting_dissent",
-            Self::RecoveryFailed => "recovery_failed",
         }
     }
 }

@@ -12,18 +12,8 @@ use criterion::Criterion;
 const EMPTY: Callbacks = Callbacks {
     create: Some(create),
     destroy_instance: Some(destroy_instance),
-    on_initialize: None,
-    on_start: None,
-    on_stop: None,
-    on_reset: None,
-    on_error: None,
-    on_recover: None,
-    on_destroy: None,
     on_execute: Some(on_execute),
-    on_updated: None,
-    on_event: None,
-    on_period_changed: None,
-    on_call: None,
+    ..Callbacks::NONE
 };
 
 unsafe extern "C" fn create(_: *const HostTable, _: *mut HostContext) -> *mut Instance {

@@ -6,7 +6,7 @@
 //! A fault in here or below is outside the component's own code: its thread is set aside, because
 //! the allocator's lock may be held. So no figure is ever half written.
 //!
-//! An executable that loads components must export these symbols; see `build.rs`.
+//! An executable that loads components must export these symbols; see `exported_symbols.rs`.
 
 use libc::{c_int, c_void, size_t};
 

@@ -3,7 +3,7 @@
 //! always did. (Calls that the C library makes inside itself do not pass here; its `abort` after a
 //! corrupted heap arrives as SIGABRT with the instruction pointer in the C library.)
 //!
-//! An executable that loads components must export these symbols; see `build.rs`.
+//! An executable that loads components must export these symbols; see `exported_symbols.rs`.
 
 use std::ffi::CStr;
 

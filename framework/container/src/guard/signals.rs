@@ -4,7 +4,7 @@
 //! its name is put on record, once. Everything else, and everybody else, gets what they always did.
 //!
 //! A component that makes the system call itself, or does it in a thread of its own, is not held
-//! back. An executable that loads components must export these symbols; see `build.rs`.
+//! back. An executable that loads components must export these symbols; see `exported_symbols.rs`.
 
 use std::mem;
 use std::ptr;

@@ -126,13 +126,15 @@ impl Schedule {
     }
 
     /// Whether an injection is open.
-    pub fn is_open(&self, number: usize) -> bool {
+    #[cfg(test)]
+    fn is_open(&self, number: usize) -> bool {
         let entry = self.entries.get(number);
         entry.is_some_and(|entry| entry.open.is_some())
     }
 
     /// Whether nothing is open and nothing will begin any more.
-    pub fn is_over(&self) -> bool {
+    #[cfg(test)]
+    fn is_over(&self) -> bool {
         let mut entries = self.entries.iter();
         entries.all(|entry| entry.due.is_none() && entry.open.is_none())
     }

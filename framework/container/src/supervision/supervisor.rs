@@ -1,8 +1,8 @@
 //! The thin shell around the fault manager: observations go in, effects are carried out.
 //!
 //! Whoever has observed something calls [`Supervisor::attend`] afterwards; nobody waits: if another
-//! thread is at it, that thread sees the observation too. What is to be done with a component is an
-//! order to its executor.
+//! thread is at it, that one or the thread that looks after time sees the observation too. What is
+//! to be done with a component is an order to its executor.
 
 use std::collections::VecDeque;
 use std::sync::atomic::AtomicU64;
@@ -193,8 +193,8 @@ impl Supervisor {
             let mut core = match self.core.try_lock() {
                 Ok(core) => core,
                 Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
-                // Whoever is at it looks again before it leaves.
-                Err(TryLockError::WouldBlock) => return,
+                // Whoever is at it may only be reading: the thread that looks after time looks again.
+                Err(TryLockError::WouldBlock) => return self.rouse(),
             };
             while let Some(observation) = self.environment.observations.take() {
                 let now = self.environment.clock.now();

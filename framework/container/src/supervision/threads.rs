@@ -30,7 +30,7 @@ pub struct ManagerThreads {
 }
 
 impl ManagerThreads {
-    /// Starts both.
+    /// Starts all three.
     ///
     /// # Errors
     /// If the system refuses a thread.
@@ -60,7 +60,7 @@ impl ManagerThreads {
         Ok(())
     }
 
-    /// Ends both. A standby that hangs while it is prepared is left behind.
+    /// Ends them. A standby that hangs while it is prepared is left behind.
     pub fn stop(&mut self, supervisor: &Supervisor) {
         self.stopping.store(true, Ordering::Release);
         supervisor.rouse();

@@ -43,19 +43,19 @@ impl System {
                 Ok(failures) if failures.is_empty() => {}
                 Ok(failures) => {
                     self.shut_down(STOP_LIMIT);
-                    self.abandon("start_refused");
+                    self.record_end("start_refused");
                     return Err(StartError::Components(failures));
                 }
                 Err(error) => {
                     self.shut_down(STOP_LIMIT);
-                    self.abandon("start_refused");
+                    self.record_end("start_refused");
                     return Err(error);
                 }
             }
         }
         self.check_backups().inspect_err(|_| {
             self.shut_down(STOP_LIMIT);
-            self.abandon("start_refused");
+            self.record_end("start_refused");
         })
     }
 
@@ -86,8 +86,14 @@ impl System {
         }
     }
 
-    /// Puts on record that the start came to nothing.
-    fn abandon(&self, reason: &'static str) {
+    /// Puts on record why it is over, and what of it is not on record.
+    pub(super) fn record_end(&self, reason: &'static str) {
+        let dropped = self.environment.observations.dropped();
+        if dropped > 0 {
+            self.notice(&format!(
+                "{dropped} symptoms were not judged: too many came at once"
+            ));
+        }
         let events_lost = self.environment.events.lost();
         self.environment.events.record(
             self.environment.clock.now_ns(),

@@ -31,19 +31,8 @@ thread_local! {
 
 const CALLBACKS: Callbacks = Callbacks {
     create: Some(create),
-    destroy_instance: None,
-    on_initialize: None,
-    on_start: None,
-    on_stop: None,
-    on_reset: None,
-    on_error: None,
-    on_recover: None,
-    on_destroy: None,
     on_execute: Some(on_execute),
-    on_updated: None,
-    on_event: None,
-    on_period_changed: None,
-    on_call: None,
+    ..Callbacks::NONE
 };
 
 unsafe extern "C" fn create(table: *const HostTable, context: *mut HostContext) -> *mut Instance {
