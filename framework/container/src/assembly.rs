@@ -216,7 +216,13 @@ fn factories(
         }));
         let rules = rules.components.get(number).cloned().unwrap_or_default();
         let environment = Arc::clone(environment);
-        Arc::new(Factory::new(number, variants, rules, environment, Arc::clone(hosts)))
+        Arc::new(Factory::new(
+            number,
+            variants,
+            rules,
+            environment,
+            Arc::clone(hosts),
+        ))
     })
     .collect()
 }

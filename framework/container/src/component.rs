@@ -232,12 +232,17 @@ impl Component {
         if let Some(stray) = self.instance.take_stray_fault() {
             let fault = match stray {
                 Stray::Thread(trap) => judgement::stray_fault(&trap),
-                Stray::HostEnded => self.host_ended("nothing"),
+                Stray::HostEnded => self.host_ended("no callback"),
             };
             self.record(&fault);
             self.enter_state(LifeCycleState::Error);
             self.report(&fault);
         }
+    }
+
+    /// Whether it could be called if it were now: an instance that stood by may have died.
+    pub fn is_fit(&self) -> bool {
+        self.instance.is_fit()
     }
 
     /// The thread was lost inside this component. Whether that is a symptom, or the failure of
@@ -319,7 +324,9 @@ impl Component {
         if self.services.environment().injections.is_armed() {
             limit = self.inject(callback, name).unwrap_or(limit);
         }
-        let ending = self.instance.call(callback, limit, loss, &mut self.services);
+        let ending = self
+            .instance
+            .call(callback, limit, loss, &mut self.services);
         if self.counts_allocations {
             self.tell_allocations();
         }

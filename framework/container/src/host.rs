@@ -14,6 +14,7 @@ mod answer;
 mod channel;
 mod critical;
 mod ending;
+mod filter;
 mod group;
 mod input;
 mod instance;
@@ -34,7 +35,6 @@ pub use group::Hosts;
 pub use instance::{Hosted, HostedComponent};
 pub use remains::RemoteScene;
 pub use serve::host_main;
-pub use setup::HostLimits;
 
 /// The hidden command of the executable that a host runs.
 const HOST_COMMAND: &str = "host";

@@ -9,13 +9,13 @@ use system_model::injection::ContainerFailure;
 use system_model::rules::{ComponentRules, IsolationTier, Preload};
 use system_model::specification::{ComponentSpecification, ExecutionKind, PortDirection, PortKind};
 
+use crate::component::Instance;
 use crate::component::{
     CallLimits, Calls, Component, DataInput, DataOutput, Environment, EventOutput, PortEnd,
     Services,
 };
-use crate::component::Instance;
 use crate::guard::Guarded;
-use crate::host::{HostLimits, Hosted, HostedComponent, Hosts};
+use crate::host::{Hosted, HostedComponent, Hosts};
 use crate::library::{ComponentDescription, LoadedLibrary, PortDescription};
 use crate::status::ComponentStatus;
 
@@ -150,7 +150,7 @@ impl Factory {
             group: rule.and_then(|rule| rule.group.as_deref()),
             stands_by,
             counts_allocations: self.rules.memory.is_some(),
-            limits: HostLimits::default(),
+            limits: rule.map(|rule| rule.limits).unwrap_or_default(),
         };
         Hosted::new(&self.hosts, component, &self.environment.clock)
     }

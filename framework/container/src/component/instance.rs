@@ -53,6 +53,14 @@ impl Instance {
         }
     }
 
+    /// Whether it can be called, and what it runs in has not died.
+    pub fn is_fit(&self) -> bool {
+        match self {
+            Self::Guarded(guarded) => guarded.is_alive(),
+            Self::Hosted(hosted) => hosted.is_alive() && !hosted.has_lost_host(),
+        }
+    }
+
     /// Runs a callback to its end: see [`Guarded::call`].
     #[inline]
     pub fn call<Services: HostServices>(

@@ -118,9 +118,13 @@ pub(super) fn answer<Services: HostServices>(
             Request::Write(port, ForeignBytesMut::at(0, bytes).for_reading())
         }
         Asked::Raise(port, bytes) => Request::Raise(port, content(bytes)),
-        Asked::Call(port, method, request, reply, deadline_ns) => {
-            Request::Call(port, method, content(request), to_host(0, reply), deadline_ns)
-        }
+        Asked::Call(port, method, request, reply, deadline_ns) => Request::Call(
+            port,
+            method,
+            content(request),
+            to_host(0, reply),
+            deadline_ns,
+        ),
         Asked::Property(name, value) => {
             let length = size_of::<usize>();
             Request::Property(text(0, name), to_host(length, value), to_host(0, length))

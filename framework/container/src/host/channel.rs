@@ -245,19 +245,22 @@ impl Channel {
 
     /// A word at a multiple of eight bytes.
     fn word(&self, offset: usize) -> &AtomicU64 {
-        assert!(offset.is_multiple_of(8) && offset + 8 <= self.size, "no such word");
+        assert!(
+            offset.is_multiple_of(8) && offset + 8 <= self.size,
+            "no such word"
+        );
         // SAFETY: inside the mapping, aligned, and only used atomically.
-        unsafe { AtomicU64::from_ptr(self.base.add(offset).cast()) }
+        unsafe { AtomicU64::from_ptr(self.base.wrapping_add(offset).cast()) }
     }
 
     fn turn(&self) -> &AtomicU32 {
         // SAFETY: inside the header, aligned, and only used atomically.
-        unsafe { AtomicU32::from_ptr(self.base.add(TURN).cast()) }
+        unsafe { AtomicU32::from_ptr(self.base.wrapping_add(TURN).cast()) }
     }
 
     fn life(&self) -> &AtomicU32 {
         // SAFETY: as above.
-        unsafe { AtomicU32::from_ptr(self.base.add(LIFE).cast()) }
+        unsafe { AtomicU32::from_ptr(self.base.wrapping_add(LIFE).cast()) }
     }
 }
 

@@ -56,9 +56,10 @@ impl CriticalMemory {
             .and_then(|end| end.checked_next_multiple_of(PAGE))
             .ok_or(rustix::io::Errno::FAULT)?;
         let wanted = end - start;
-        let known = self.shared.iter().find(|shared| {
-            shared.start <= start && end <= shared.start + shared.size
-        });
+        let known = self
+            .shared
+            .iter()
+            .find(|shared| shared.start <= start && end <= shared.start + shared.size);
         if let Some(known) = known {
             return Ok(known.place + (address - known.start));
         }

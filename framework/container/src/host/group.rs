@@ -37,7 +37,11 @@ impl Hosts {
     ///
     /// # Errors
     /// If the system refuses the process.
-    pub(super) fn host(&self, group: Option<&str>, stands_by: bool) -> io::Result<Arc<HostProcess>> {
+    pub(super) fn host(
+        &self,
+        group: Option<&str>,
+        stands_by: bool,
+    ) -> io::Result<Arc<HostProcess>> {
         let Some(group) = group else {
             return self.start();
         };
@@ -63,9 +67,10 @@ impl Hosts {
 
 impl Hosts {
     fn start(&self) -> io::Result<Arc<HostProcess>> {
-        let executable = self.executable.as_deref().ok_or_else(|| {
-            io::Error::other("there is no executable `steadfast` to run it in")
-        })?;
+        let executable = self
+            .executable
+            .as_deref()
+            .ok_or_else(|| io::Error::other("there is no executable `steadfast` to run it in"))?;
         HostProcess::start(executable).map(Arc::new)
     }
 }

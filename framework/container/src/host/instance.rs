@@ -7,6 +7,8 @@ use std::sync::Arc;
 use std::thread::ThreadId;
 use std::time::Duration;
 
+use system_model::rules::ProcessLimits;
+
 use super::answer;
 use super::channel::{Channel, Waited};
 use super::ending::HostEnding;
@@ -19,7 +21,7 @@ use super::process::HostProcess;
 use super::remains::RemoteScene;
 use super::remote::monotonic_ns;
 use super::scheduling::Scheduling;
-use super::setup::{HostLimits, Setup};
+use super::setup::Setup;
 use super::socket;
 use crate::clock::Clock;
 use crate::guard::loss::Loss;
@@ -71,7 +73,7 @@ pub struct HostedComponent<'factory> {
     /// Whether a rule asks how much memory it uses.
     pub counts_allocations: bool,
     /// Bounds of the process.
-    pub limits: HostLimits,
+    pub limits: ProcessLimits,
 }
 
 impl Hosted {

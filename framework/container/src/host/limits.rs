@@ -6,7 +6,9 @@ use rustix::process::{
     Resource, Rlimit, Signal, getppid, set_parent_process_death_signal, setpgid, setrlimit,
 };
 
-use super::setup::HostLimits;
+use system_model::rules::ProcessLimits;
+
+use super::filter::refuse_system_calls;
 
 /// Makes the host a process group of its own that dies with the container.
 ///
@@ -21,11 +23,12 @@ pub(super) fn tie_to_container() -> io::Result<()> {
     Ok(())
 }
 
-/// Sets the bounds.
+/// Sets the bounds. A machine that knows no filters of system calls runs components without; the
+/// README says so.
 ///
 /// # Errors
 /// If the system refuses one.
-pub(super) fn bound(limits: &HostLimits) -> io::Result<()> {
+pub(super) fn bound(limits: &ProcessLimits) -> io::Result<()> {
     for (resource, limit) in [
         (Resource::Data, limits.memory_bytes),
         (Resource::Nofile, limits.open_files),
@@ -38,6 +41,9 @@ pub(super) fn bound(limits: &HostLimits) -> io::Result<()> {
             };
             setrlimit(resource, both)?;
         }
+    }
+    if limits.filters_system_calls {
+        let _without = refuse_system_calls();
     }
     Ok(())
 }

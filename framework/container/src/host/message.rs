@@ -356,7 +356,11 @@ mod tests {
                 "{understood:?}"
             );
         }
-        assert_eq!(ToHost::from_words(&words(&[1, 1, 11])), None, "no such callback");
+        assert_eq!(
+            ToHost::from_words(&words(&[1, 1, 11])),
+            None,
+            "no such callback"
+        );
     }
 
     #[test]

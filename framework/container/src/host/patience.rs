@@ -68,7 +68,8 @@ impl Patience {
 
     /// Whether the limit has passed, if all time counts.
     pub(super) fn is_used_up(&self, hurry: Duration) -> bool {
-        self.limit(hurry).is_some_and(|limit| self.passed() >= limit)
+        self.limit(hurry)
+            .is_some_and(|limit| self.passed() >= limit)
     }
 
     /// The limit that was exceeded, if one was.

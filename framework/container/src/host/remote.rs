@@ -212,7 +212,10 @@ impl Remote {
         };
         let both = [message.as_bytes(), file.as_bytes()].concat();
         self.put(self.layout.to_container, &both);
-        self.ask(Asked::Failed(message.len(), file.len(), line, column), false)
+        self.ask(
+            Asked::Failed(message.len(), file.len(), line, column),
+            false,
+        )
     }
 
     fn open_device(&mut self, name: ForeignText, descriptor: ForeignBytesMut) -> u64 {

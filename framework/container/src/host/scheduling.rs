@@ -38,6 +38,7 @@ impl Scheduling {
             sched_priority: self.priority,
         };
         // SAFETY: the parameters are there; a thread that is gone is refused.
-        let _refused = unsafe { libc::sched_setscheduler(thread, self.policy, &raw const parameters) };
+        let _refused =
+            unsafe { libc::sched_setscheduler(thread, self.policy, &raw const parameters) };
     }
 }

@@ -15,9 +15,7 @@ use super::robust::SignsOfLife;
 use super::setup::Setup;
 use super::socket;
 use crate::guard::loss::{Loss, losses, wait_for_loss};
-use crate::guard::{
-    CallLimit, Callback, Ending, Guarded, ServiceCall, Trap,
-};
+use crate::guard::{CallLimit, Callback, Ending, Guarded, ServiceCall, Trap};
 use crate::library::LoadedLibrary;
 
 /// How often lost threads are looked for if no word of one came.

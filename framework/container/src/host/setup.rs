@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
+use system_model::rules::ProcessLimits;
 
 use super::layout::Layout;
 
@@ -23,18 +24,16 @@ pub(super) struct Setup {
     /// Whether a rule asks how much memory the component uses.
     pub(super) counts_allocations: bool,
     /// Bounds of the process; those of the first instance hold.
-    pub(super) limits: HostLimits,
+    #[serde(with = "Limits")]
+    pub(super) limits: ProcessLimits,
 }
 
-/// Bounds of a host process.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct HostLimits {
-    /// Private writable memory, in bytes.
-    pub memory_bytes: Option<u64>,
-    /// Open files.
-    pub open_files: Option<u64>,
-    /// Processor time since it was started, in seconds.
-    pub processor_time_s: Option<u64>,
-    /// Whether the system calls that no component needs are refused.
-    pub filters_system_calls: bool,
+/// As [`ProcessLimits`], for the way to the host.
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "ProcessLimits")]
+struct Limits {
+    memory_bytes: Option<u64>,
+    open_files: Option<u64>,
+    processor_time_s: Option<u64>,
+    filters_system_calls: bool,
 }
