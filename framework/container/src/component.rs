@@ -72,11 +72,12 @@ pub enum OperationError {
 impl Component {
     /// Puts an instance together. Nothing of it runs yet.
     pub fn new(
-        instance: Instance,
+        instance: impl Into<Instance>,
         services: Services,
         status: Arc<ComponentStatus>,
         period: Duration,
     ) -> Self {
+        let instance = instance.into();
         status.set_in_host(matches!(instance, Instance::Hosted(_)));
         Self {
             name: Arc::clone(services.name()),

@@ -8,8 +8,7 @@ use component_sdk::expansion::descriptor;
 use component_sdk::prelude::*;
 use container::clock::Clock;
 use container::component::{
-    Component as Running, ComponentCell, DataInput, DataOutput, Environment, Instance, PortEnd,
-    Services,
+    Component as Running, ComponentCell, DataInput, DataOutput, Environment, PortEnd, Services,
 };
 use container::device::Devices;
 use container::event_log::EventLog;
@@ -249,10 +248,7 @@ fn member(number: usize, ports: Vec<PortEnd>, environment: &Arc<Environment>) ->
     );
     Member {
         component: Arc::new(ComponentCell::new(Running::new(
-            Instance::Guarded(guarded),
-            services,
-            status,
-            PERIOD,
+            guarded, services, status, PERIOD,
         ))),
         number,
         triggers: Vec::new(),

@@ -110,10 +110,10 @@ impl Factory {
             Some(library) => {
                 let callbacks = library.description.callbacks;
                 Guarded::new(callbacks, library.code, self.number)
-                    .map(Instance::Guarded)
+                    .map(Instance::from)
                     .map_err(|error| format!("no stack for it: {error}"))?
             }
-            None => Instance::Hosted(Box::new(self.host(variant, status.is_standby())?)),
+            None => Instance::from(self.host(variant, status.is_standby())?),
         };
         let services = Services::new(
             Arc::from(specification.name.as_str()),

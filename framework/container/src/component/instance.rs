@@ -43,6 +43,18 @@ impl Scene {
     }
 }
 
+impl From<Guarded> for Instance {
+    fn from(guarded: Guarded) -> Self {
+        Self::Guarded(guarded)
+    }
+}
+
+impl From<Hosted> for Instance {
+    fn from(hosted: Hosted) -> Self {
+        Self::Hosted(Box::new(hosted))
+    }
+}
+
 impl Instance {
     /// Whether it can still be called.
     #[inline]
