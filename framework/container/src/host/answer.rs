@@ -110,6 +110,10 @@ pub(super) fn answer<Services: HostServices>(
                 return services.answer(&Request::Read(port, ForeignBytesMut::at(0, bytes)));
             }
             input.is_read = true;
+            let offer = channel.offer(layout, port);
+            let taken =
+                offer.is_some_and(|offer| offer.load(Ordering::Relaxed) == Offer::Taken.word());
+            input.is_kept &= !taken;
             let status = read(channel, layout, input, services);
             input.is_kept = false;
             return u64::from(status.0);

@@ -26,8 +26,8 @@ use super::socket;
 use crate::clock::Clock;
 use crate::guard::loss::Loss;
 use crate::guard::{
-    CallLimit, Callback, Ending, ForeignBytes, ForeignBytesMut, HostServices, Misbehaviour,
-    Registers, Trap,
+    CallLimit, Callback, Ending, ForeignBytes, ForeignBytesMut, Guarded, HostServices,
+    Misbehaviour, Registers, Trap,
 };
 use crate::library::PortDescription;
 
@@ -87,6 +87,8 @@ impl Hosted {
         component: HostedComponent<'_>,
         clock: &Clock,
     ) -> Result<Self, String> {
+        // What a host passes is copied as if a component passed it.
+        Guarded::prepare_process();
         let layout = Arc::new(Layout::of(component.ports));
         let in_words = |error: io::Error| format!("its host process does not start: {error}");
         let channel = Arc::new(Channel::create(layout.total).map_err(in_words)?);

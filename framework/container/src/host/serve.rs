@@ -124,7 +124,7 @@ fn run(post: &Post, devices: OwnedFd) {
         let ending = call_back(post, &mut guarded, &mut remote, &call);
         let ended = HostEnding {
             ending,
-            stray: guarded.take_stray_fault(),
+            stray: guarded.look_for_stray_fault(),
             allocated_bytes: guarded.allocated_bytes(),
         };
         channel.say(&ToContainer::Ended(ended).words(remote.take_written()));
