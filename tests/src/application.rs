@@ -63,7 +63,7 @@ impl Application {
             rules: String::new(),
             injections: String::new(),
             members: Vec::new(),
-            in_hosts: std::env::var_os("TIER").is_some(),
+            in_hosts: false,
         }
     }
 

@@ -279,7 +279,7 @@ impl Hosted {
         services: &mut Services,
     ) -> Ending {
         self.allocated_bytes = ended.allocated_bytes;
-        self.stray = ended.stray;
+        self.stray = self.stray.or(ended.stray);
         if let Ending::Returned(status) = ended.ending {
             if status != component_abi::Status::PANICKED {
                 answer::take_written(&self.channel, &self.layout, written, services);
