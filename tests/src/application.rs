@@ -26,6 +26,7 @@ const SUMMARY: &str = "summary.json";
 
 /// Files that are passed to a run when they are there.
 const RULES: &str = "rules.xml";
+const ISOLATION: &str = "isolation.xml";
 const INJECTIONS: &str = "injections.xml";
 
 /// An application in a folder that is removed with it.
@@ -36,6 +37,10 @@ pub struct Application {
     rest: String,
     rules: String,
     injections: String,
+    /// Instance names of its components.
+    members: Vec<String>,
+    /// Whether each of them runs in a process of its own.
+    in_hosts: bool,
 }
 
 impl Default for Application {
@@ -57,13 +62,23 @@ impl Application {
             rest: String::new(),
             rules: String::new(),
             injections: String::new(),
+            members: Vec::new(),
+            in_hosts: false,
         }
+    }
+
+    /// Each component runs in a process of its own.
+    #[must_use]
+    pub fn in_hosts(mut self) -> Self {
+        self.in_hosts = true;
+        self
     }
 
     /// Adds a component.
     #[must_use]
     pub fn with(mut self, member: &Member) -> Self {
         self.write(&format!("{}.xml", member.instance()), member.profile());
+        self.members.push(member.instance().to_owned());
         self.subcomponents += &member.subcomponent();
         self.subcomponents += "\n";
         self
@@ -211,7 +226,15 @@ impl Application {
     /// Starts a run with its rules and injections; [`Self::outcome`] tells what became of it.
     pub fn start(&self, arguments: &[&str]) -> Watched {
         let mut arguments: Vec<String> = arguments.iter().map(|it| (*it).to_owned()).collect();
+        let isolation =
+            |name| format!("<component name='{name}'><isolation>process</isolation></component>\n");
+        let isolation: String = if self.in_hosts {
+            self.members.iter().map(isolation).collect()
+        } else {
+            String::new()
+        };
         for (option, name, root, text) in [
+            ("--rules", ISOLATION, "fault_rules", &isolation),
             ("--rules", RULES, "fault_rules", &self.rules),
             ("--inject", INJECTIONS, "fault_injections", &self.injections),
         ] {

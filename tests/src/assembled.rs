@@ -44,7 +44,7 @@ pub fn assembled(application: &Path, libraries: &Path, environment: &Arc<Environ
     let specification = loaded.specification.expect("a sound application");
     let options = LibraryOptions {
         search: LibrarySearch::new(vec![libraries.to_owned()]),
-        probe: None,
+        executable: None,
     };
     let rules = FaultRules::default();
     assemble(&specification, &rules, &options, environment)

@@ -12,7 +12,7 @@ mod secondary;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use system_model::rules::{FaultRules, Preload};
+use system_model::rules::{FaultRules, IsolationTier, Preload};
 use system_model::specification::{
     ApplicationSpecification, ComponentSpecification, Place, PortKind,
 };
@@ -23,6 +23,7 @@ use libraries::Libraries;
 
 use crate::component::{ComponentCell, Environment};
 use crate::executor::Executor;
+use crate::host::Hosts;
 use crate::library::{
     ComponentDescription, LibraryError, LibrarySearch, LoadedLibrary, PortDescription,
 };
@@ -33,8 +34,9 @@ use crate::status::ComponentStatus;
 pub struct LibraryOptions {
     /// Where they are looked for, after the folders of the component's own profile.
     pub search: LibrarySearch,
-    /// The executable that loads each library first in a process of its own; `None`: not done.
-    pub probe: Option<PathBuf>,
+    /// The executable `steadfast`: loads each library first in a process of its own, and runs the
+    /// components that a rule puts in one. `None`: neither can be done.
+    pub executable: Option<PathBuf>,
 }
 
 /// What is wrong with an application, found before anything of it ran.
@@ -61,12 +63,12 @@ pub enum AssemblyProblem {
         help: String,
     },
     /// The machine has no room for it.
-    #[error("component '{component}': no stack for it: {error}")]
+    #[error("component '{component}': {error}")]
     Resources {
         /// Instance name.
         component: String,
-        /// The system's words.
-        error: std::io::Error,
+        /// Why.
+        error: String,
     },
 }
 
@@ -124,12 +126,22 @@ pub fn assemble_together(
     if !problems.is_empty() {
         return Err(problems);
     }
-    let factories = factories(specification, rules, &primaries, secondaries, environment);
+    let hosts = Hosts::new(options.executable.as_deref());
+    let factories = factories(
+        specification,
+        rules,
+        &primaries,
+        secondaries,
+        environment,
+        &hosts,
+    );
     let mut components = Vec::new();
     let mut statuses = Vec::new();
     for (factory, library) in factories.iter().zip(&primaries) {
         let name = &factory.variants()[0].specification.name;
         let status = Arc::new(ComponentStatus::new(name.clone()));
+        let guarded = factory.isolation() == IsolationTier::Guarded;
+        let library = guarded.then_some(library);
         match factory.instantiate(0, library, Arc::clone(&status)) {
             Ok(component) => components.push(Arc::new(ComponentCell::new(component))),
             Err(error) => problems.push(AssemblyProblem::Resources {
@@ -185,6 +197,7 @@ fn factories(
     primaries: &[LoadedLibrary],
     secondaries: Vec<Vec<secondary::Candidate<'_>>>,
     environment: &Arc<Environment>,
+    hosts: &Arc<Hosts>,
 ) -> Vec<Arc<Factory>> {
     let components = specification.components.iter().zip(primaries);
     let all = components.zip(secondaries).enumerate();
@@ -192,16 +205,24 @@ fn factories(
         let mut variants = vec![Variant {
             specification: component.clone(),
             path: library.path.clone(),
+            description: library.description.clone(),
             preload: Preload::Cold,
         }];
         variants.extend(secondaries.into_iter().map(|candidate| Variant {
             specification: candidate.rule.specification.clone(),
             path: candidate.library.path,
+            description: candidate.library.description,
             preload: candidate.rule.preload,
         }));
         let rules = rules.components.get(number).cloned().unwrap_or_default();
         let environment = Arc::clone(environment);
-        Arc::new(Factory::new(number, variants, rules, environment))
+        Arc::new(Factory::new(
+            number,
+            variants,
+            rules,
+            environment,
+            Arc::clone(hosts),
+        ))
     })
     .collect()
 }

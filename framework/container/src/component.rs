@@ -3,6 +3,7 @@
 mod cell;
 mod checkpoint;
 mod injected;
+mod instance;
 mod judgement;
 mod limits;
 mod messages;
@@ -20,13 +21,14 @@ use system_model::life_cycle::{LifeCycleState, Operation, Transition, transition
 
 use crate::event_log::Event;
 use crate::guard::loss::{Loss, LostThread};
-use crate::guard::{Callback, Ending, Guarded, Scene};
+use crate::guard::{Callback, Ending};
 use crate::status::ComponentStatus;
 use limits::Limits;
 
 pub(crate) use cell::mark_lost;
 pub use cell::{ComponentCell, Entered};
 pub use checkpoint::Checkpoints;
+pub use instance::{Instance, Scene, Stray};
 pub use limits::CallLimits;
 pub use port_end::{
     BoundMethod, Calls, DataInput, DataOutput, EventOutput, Inbox, PortEnd, Provider,
@@ -37,7 +39,7 @@ pub use tap::{InputTap, OutputTap, SafeDatum, VotedInput, VotingSource, Watch};
 /// One component instance.
 pub struct Component {
     name: Arc<str>,
-    guarded: Guarded,
+    instance: Instance,
     services: Services,
     status: Arc<ComponentStatus>,
     period: Duration,
@@ -70,14 +72,16 @@ pub enum OperationError {
 impl Component {
     /// Puts an instance together. Nothing of it runs yet.
     pub fn new(
-        guarded: Guarded,
+        instance: impl Into<Instance>,
         services: Services,
         status: Arc<ComponentStatus>,
         period: Duration,
     ) -> Self {
+        let instance = instance.into();
+        status.set_in_host(matches!(instance, Instance::Hosted(_)));
         Self {
             name: Arc::clone(services.name()),
-            guarded,
+            instance,
             services,
             status,
             period,
@@ -104,7 +108,7 @@ impl Component {
     /// From now on its status tells how much memory its callbacks have allocated and not freed.
     pub fn count_allocations(&mut self) {
         self.counts_allocations = true;
-        self.guarded.count_allocations();
+        self.instance.count_allocations();
     }
 
     /// Instance name.
@@ -129,7 +133,7 @@ impl Component {
 
     /// Whether the instance can still be called.
     pub fn is_alive(&self) -> bool {
-        self.guarded.is_alive()
+        self.instance.is_alive()
     }
 
     /// Makes the instance and tells it its period.
@@ -153,7 +157,7 @@ impl Component {
             Transition::Refused => return Err(OperationError::Refused),
             Transition::Run(target) => target,
         };
-        if !self.guarded.is_alive() {
+        if !self.instance.is_alive() {
             // Nothing of an abandoned instance is called again: it can only be given up.
             if operation != Operation::Destroy {
                 return Err(OperationError::Refused);
@@ -226,19 +230,27 @@ impl Component {
     /// Whether a thread that the component made itself has met a fault since the last look.
     #[inline]
     pub fn look_for_stray_fault(&mut self) {
-        if let Some(trap) = self.guarded.take_stray_fault() {
-            let fault = judgement::stray_fault(&trap);
+        if let Some(stray) = self.instance.take_stray_fault() {
+            let fault = match stray {
+                Stray::Thread(trap) => judgement::stray_fault(&trap),
+                Stray::HostEnded => self.host_ended("no callback"),
+            };
             self.record(&fault);
             self.enter_state(LifeCycleState::Error);
             self.report(&fault);
         }
     }
 
+    /// Whether it could be called if it were now: an instance that stood by may have died.
+    pub fn is_fit(&self) -> bool {
+        self.instance.is_fit()
+    }
+
     /// The thread was lost inside this component. Whether that is a symptom, or the failure of
     /// what the fault manager itself had asked for, is for the caller to say.
     pub fn lost(&mut self, thread: &LostThread) -> Fault {
-        self.guarded.quarantine();
-        self.scene = self.guarded.scene(&thread.trap);
+        self.instance.quarantine();
+        self.scene = self.instance.scene(Some(&thread.trap));
         let fault = judgement::trap_fault(&thread.trap, self.services.callback(), true);
         self.record(&fault);
         self.enter_state(LifeCycleState::Error);
@@ -292,7 +304,7 @@ impl Component {
     /// ACTIVE -> ERROR, with `onError` where the instance can still be called.
     #[cold]
     fn fail(&mut self, fault: &Fault, loss: &Loss) {
-        let told = self.guarded.is_alive() && self.operate(Operation::StopOnError, loss).is_ok();
+        let told = self.instance.is_alive() && self.operate(Operation::StopOnError, loss).is_ok();
         if !told {
             self.enter_state(LifeCycleState::Error);
         }
@@ -313,7 +325,9 @@ impl Component {
         if self.services.environment().injections.is_armed() {
             limit = self.inject(callback, name).unwrap_or(limit);
         }
-        let ending = self.guarded.call(callback, limit, loss, &mut self.services);
+        let ending = self
+            .instance
+            .call(callback, limit, loss, &mut self.services);
         if self.counts_allocations {
             self.tell_allocations();
         }
@@ -326,7 +340,7 @@ impl Component {
     }
 
     fn tell_allocations(&self) {
-        let bytes = self.guarded.allocated_bytes();
+        let bytes = self.instance.allocated_bytes();
         self.status.set_allocated_bytes(bytes);
     }
 

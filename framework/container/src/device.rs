@@ -1,8 +1,9 @@
 //! Devices that components open by name: of the simulated world, or of the machine.
+#![allow(unsafe_code)] // takes a descriptor back that was given away
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, IsTerminal as _};
-use std::os::fd::{AsRawFd as _, IntoRawFd as _, OwnedFd};
+use std::os::fd::{AsRawFd as _, FromRawFd as _, IntoRawFd as _, OwnedFd};
 use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -99,6 +100,12 @@ impl OpenDevice {
     pub fn give_away(self) {
         let _now_theirs = self.descriptor.into_raw_fd();
     }
+}
+
+/// A device that was given away under this number, taken back: for a component in another process.
+pub(crate) fn taken_back(number: i32) -> OwnedFd {
+    // SAFETY: given away by `OpenDevice::give_away` to nobody but the caller.
+    unsafe { OwnedFd::from_raw_fd(number) }
 }
 
 /// Opens a device file; a terminal is set to raw 115200 8N1, as motion boards speak.

@@ -114,12 +114,24 @@ impl Guarded {
         })
     }
 
+    /// Gives the process the handlers without which a fault in it is not survived. Instances do that
+    /// themselves.
+    pub fn prepare_process() {
+        trap::install();
+    }
+
     /// The fault that a thread of the component's own has met, once; the instance is quarantined.
     #[inline]
     pub fn take_stray_fault(&mut self) -> Option<Trap> {
-        let trap = self.stray.take()?;
+        let trap = self.look_for_stray_fault()?;
         self.quarantine();
         Some(trap)
+    }
+
+    /// The same, for somebody who decides elsewhere what becomes of the instance.
+    #[inline]
+    pub fn look_for_stray_fault(&mut self) -> Option<Trap> {
+        self.stray.take()
     }
 
     /// Gives the calling thread what the trap handler needs. Must be done once by every thread

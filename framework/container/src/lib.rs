@@ -13,6 +13,7 @@ pub mod device;
 pub mod event_log;
 pub mod executor;
 pub mod guard;
+pub mod host;
 pub mod injection;
 pub mod lane;
 pub mod library;

@@ -31,6 +31,9 @@ enum Command {
     Fault(FaultArguments),
     /// Measure how good Steadfast is at what it does.
     Bench(BenchArguments),
+    /// Run components for a container, as it says on the standard input.
+    #[command(hide = true)]
+    Host,
     /// Load a library and say by the exit code whether that works.
     #[command(hide = true)]
     ProbeLibrary {
@@ -45,6 +48,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Fault(arguments) => fault::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Host => container::host::host_main(),
         Command::ProbeLibrary { path } => container::library::probe_main(&path),
     }
 }

@@ -167,6 +167,11 @@ impl Receiver {
         self.advance().then(|| self.current())
     }
 
+    /// Whether data wait in a queue, each to be read once.
+    pub fn has_queue(&self) -> bool {
+        !matches!(self.buffer, ReceiveBuffer::Last(_))
+    }
+
     /// What becomes of the datum that was taken last, now that the incarnation that took it died.
     pub fn leave(&mut self) -> Leftover {
         self.deaths += 1;

@@ -1,7 +1,7 @@
 //! What the container knows of each component, readable from any thread at any time.
 
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU8, AtomicU32, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, AtomicU64, Ordering};
 
 use system_model::life_cycle::LifeCycleState;
 
@@ -16,6 +16,8 @@ pub struct ComponentStatus {
     overruns: AtomicU64,
     faults: AtomicU64,
     last_fault: Mutex<Option<String>>,
+    /// Whether it runs in a process of its own.
+    in_host: AtomicBool,
     /// Of an instance that stands by, and is not seen.
     standby: bool,
     /// Bytes that its callbacks have allocated and not freed, where a rule asks.
@@ -44,6 +46,7 @@ impl ComponentStatus {
             overruns: AtomicU64::new(0),
             faults: AtomicU64::new(0),
             last_fault: Mutex::new(None),
+            in_host: AtomicBool::new(false),
             standby: false,
             allocated_bytes: AtomicU64::new(0),
             hangs_until_ns: AtomicU64::new(0),
@@ -72,6 +75,19 @@ impl ComponentStatus {
         let index = STATES.iter().position(|other| *other == state);
         let index = index.and_then(|index| u8::try_from(index).ok());
         self.state.store(index.unwrap_or(0), Ordering::Release);
+    }
+
+    /// Name of its isolation tier.
+    pub fn tier(&self) -> &'static str {
+        if self.in_host.load(Ordering::Relaxed) {
+            "process"
+        } else {
+            "guarded"
+        }
+    }
+
+    pub(crate) fn set_in_host(&self, in_host: bool) {
+        self.in_host.store(in_host, Ordering::Relaxed);
     }
 
     /// Which instance of this component it is, counted from 1.

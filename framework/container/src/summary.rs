@@ -69,7 +69,7 @@ impl ComponentSummary {
             overruns: status.overruns(),
             faults: status.faults(),
             last_fault: status.last_fault(),
-            tier: "guarded",
+            tier: status.tier(),
         }
     }
 }

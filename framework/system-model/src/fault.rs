@@ -30,6 +30,8 @@ pub enum FaultKind {
     Reported,
     /// A callback did not return before its deadline.
     Hang,
+    /// The process that the component ran in has ended.
+    HostEnded,
     /// A value outside its interval, or not finite.
     OutOfRange,
     /// A datum of another size than its type has.
@@ -68,6 +70,7 @@ impl FaultKind {
             Self::BadPointer => "bad_pointer",
             Self::Reported => "reported",
             Self::Hang => "hang",
+            Self::HostEnded => "host_ended",
             Self::OutOfRange => "out_of_range",
             Self::WrongSize => "wrong_size",
             Self::Stale => "stale",

@@ -6,15 +6,17 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use system_model::injection::ContainerFailure;
-use system_model::rules::{ComponentRules, Preload};
+use system_model::rules::{ComponentRules, IsolationTier, Preload};
 use system_model::specification::{ComponentSpecification, ExecutionKind, PortDirection, PortKind};
 
+use crate::component::Instance;
 use crate::component::{
     CallLimits, Calls, Component, DataInput, DataOutput, Environment, EventOutput, PortEnd,
     Services,
 };
 use crate::guard::Guarded;
-use crate::library::{LoadedLibrary, PortDescription};
+use crate::host::{Hosted, HostedComponent, Hosts};
+use crate::library::{ComponentDescription, LoadedLibrary, PortDescription};
 use crate::status::ComponentStatus;
 
 /// Makes the instances of one component.
@@ -25,6 +27,7 @@ pub struct Factory {
     /// The component itself, then its secondaries in order.
     variants: Vec<Variant>,
     rules: ComponentRules,
+    hosts: Arc<Hosts>,
 }
 
 /// One of the libraries that can play the component's part.
@@ -33,6 +36,8 @@ pub struct Variant {
     pub specification: ComponentSpecification,
     /// The library's file.
     pub path: PathBuf,
+    /// What the library says of itself.
+    pub description: ComponentDescription,
     /// What is prepared before it is needed.
     pub preload: Preload,
 }
@@ -44,8 +49,10 @@ impl Factory {
         variants: Vec<Variant>,
         rules: ComponentRules,
         environment: Arc<Environment>,
+        hosts: Arc<Hosts>,
     ) -> Self {
         Self {
+            hosts,
             rules,
             environment,
             number: u32::try_from(number).unwrap_or(u32::MAX),
@@ -73,24 +80,41 @@ impl Factory {
                 chosen.path.display()
             ));
         }
+        if self.isolation() == IsolationTier::Process {
+            return self.instantiate(variant, None, status);
+        }
         let library = LoadedLibrary::load(&chosen.path).map_err(|error| error.to_string())?;
-        self.instantiate(variant, &library, status)
-            .map_err(|error| format!("no stack for it: {error}"))
+        self.instantiate(variant, Some(&library), status)
     }
 
-    /// Makes an instance from a copy that was loaded for it.
+    /// Where its instances run.
+    pub fn isolation(&self) -> IsolationTier {
+        let rule = self.rules.isolation.as_ref();
+        rule.map_or_else(IsolationTier::default, |rule| rule.value.tier)
+    }
+
+    /// Makes an instance: behind the guard from a copy that was loaded for it, if there is one, else
+    /// in a host.
     ///
     /// # Errors
-    /// If the machine has no room for its stack.
+    /// If the machine has no room for its stack, or a host does not start; in words.
     pub fn instantiate(
         &self,
         variant: usize,
-        library: &LoadedLibrary,
+        library: Option<&LoadedLibrary>,
         status: Arc<ComponentStatus>,
-    ) -> std::io::Result<Component> {
+    ) -> Result<Component, String> {
         let specification = &self.variants[variant].specification;
-        let description = &library.description;
-        let guarded = Guarded::new(description.callbacks, library.code, self.number)?;
+        let description = &self.variants[variant].description;
+        let instance = match library {
+            Some(library) => {
+                let callbacks = library.description.callbacks;
+                Guarded::new(callbacks, library.code, self.number)
+                    .map(Instance::from)
+                    .map_err(|error| format!("no stack for it: {error}"))?
+            }
+            None => Instance::from(self.host(variant, status.is_standby())?),
+        };
         let services = Services::new(
             Arc::from(specification.name.as_str()),
             status.incarnation(),
@@ -105,13 +129,30 @@ impl Factory {
             }
             ExecutionKind::Passive | ExecutionKind::Aperiodic => Duration::ZERO,
         };
-        let mut component = Component::new(guarded, services, status, period);
+        let mut component = Component::new(instance, services, status, period);
         let limits = CallLimits::by_rules(&self.rules, &specification.execution);
         component.set_limits(limits);
         if self.rules.memory.is_some() {
             component.count_allocations();
         }
         Ok(component)
+    }
+
+    /// An instance in a host.
+    fn host(&self, variant: usize, stands_by: bool) -> Result<Hosted, String> {
+        let chosen = &self.variants[variant];
+        let rule = self.rules.isolation.as_ref().map(|rule| &rule.value);
+        let component = HostedComponent {
+            name: &chosen.specification.name,
+            number: self.number,
+            library: chosen.path.clone(),
+            ports: &chosen.description.ports,
+            group: rule.and_then(|rule| rule.group.as_deref()),
+            stands_by,
+            counts_allocations: self.rules.memory.is_some(),
+            limits: rule.map(|rule| rule.limits).unwrap_or_default(),
+        };
+        Hosted::new(&self.hosts, component, &self.environment.clock)
     }
 }
 

@@ -37,7 +37,7 @@ impl<'options> Libraries<'options> {
         let beside_profile = component.profile.parent().map(PathBuf::from);
         let search = self.options.search.preceded_by(beside_profile);
         let result = search.find(&component.library).and_then(|path| {
-            if let Some(executable) = &self.options.probe
+            if let Some(executable) = &self.options.executable
                 && !self.probed.contains(&path)
             {
                 probe(executable, &path)?;

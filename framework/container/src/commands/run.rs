@@ -239,7 +239,7 @@ fn libraries(arguments: &RunArguments) -> LibraryOptions {
     );
     LibraryOptions {
         search: LibrarySearch::new(folders),
-        probe: executable,
+        executable,
     }
 }
 

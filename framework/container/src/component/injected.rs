@@ -40,7 +40,7 @@ impl Component {
             }
             misbehaviour = Misbehaviour::Hang;
         }
-        self.guarded.inject(Some(misbehaviour));
+        self.instance.inject(Some(misbehaviour));
         let hangs = matches!(misbehaviour, Misbehaviour::Hang);
         (simulated && hangs && !limit.is_zero()).then(|| INJECTED_HANG.into())
     }

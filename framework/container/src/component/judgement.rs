@@ -14,6 +14,9 @@ use crate::guard::{Callback, Ending, Exit, Trap};
 /// The first page is never mapped: an address in it is a field of a null pointer.
 const NULL_PAGE: usize = 4096;
 
+/// A host that is dead is reaped within milliseconds, unless it had very much memory.
+const HOST_END: Duration = Duration::from_secs(1);
+
 impl Component {
     #[cold]
     pub(super) fn judge(
@@ -25,7 +28,7 @@ impl Component {
         let mut fault = match ending {
             Ending::Returned(status) => self.services.returned_fault(status, callback),
             Ending::Trapped(trap) => {
-                self.scene = self.guarded.scene(&trap);
+                self.scene = self.instance.scene(Some(&trap));
                 trap_fault(&trap, callback, false)
             }
             Ending::Left(Exit::Abort) => {
@@ -34,6 +37,7 @@ impl Component {
             Ending::Left(Exit::Exit(code)) => {
                 Fault::new(FaultKind::Exit, callback, format!("exit({code})"))
             }
+            Ending::HostEnded => self.host_ended(callback),
             Ending::Gone => Fault::new(
                 FaultKind::ErrorReturn,
                 callback,
@@ -41,7 +45,7 @@ impl Component {
             ),
         };
         match fault.kind {
-            FaultKind::Panic => self.guarded.quarantine(),
+            FaultKind::Panic => self.instance.quarantine(),
             FaultKind::Hang => self.judge_hang(&mut fault, called),
             _ => {}
         }
@@ -49,10 +53,24 @@ impl Component {
         // A component that hands out bad pointers must not be started; one that is active goes to
         // ERROR by way of `onError`.
         let unfit = fault.kind == FaultKind::BadPointer && !self.is_active();
-        if unfit || !self.guarded.is_alive() {
+        if unfit || !self.instance.is_alive() {
             self.enter_state(LifeCycleState::Error);
         }
         Box::new(fault)
+    }
+
+    /// The process that the component ran in has ended.
+    #[cold]
+    pub(super) fn host_ended(&mut self, callback: &'static str) -> Fault {
+        let environment = self.services.environment();
+        let mut message = "its host process ended".to_owned();
+        if environment.clock.is_simulated()
+            && let Some(ending) = self.instance.end_of_host(HOST_END)
+        {
+            message = format!("{message}: {ending}");
+        }
+        self.scene = self.instance.scene(None);
+        Fault::new(FaultKind::HostEnded, callback, message)
     }
 
     /// In simulated time a hang has lasted for as long as the rules say.

@@ -260,6 +260,13 @@ impl Services {
 }
 
 impl HostServices for Services {
+    fn has_queue(&self, port: u32) -> bool {
+        let Some(PortEnd::DataInput(input)) = self.ports.get(port as usize) else {
+            return false;
+        };
+        input.source.as_ref().is_some_and(Receiver::has_queue)
+    }
+
     #[inline]
     fn answer(&mut self, request: &Request) -> u64 {
         let status = match request {

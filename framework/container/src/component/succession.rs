@@ -143,8 +143,8 @@ impl Component {
 
     /// The end of an instance whose place was taken: what can be freed is freed when it is dropped.
     pub fn retire(&mut self) {
-        if self.guarded.is_alive() && self.state() != LifeCycleState::Destroyed {
-            self.guarded.quarantine();
+        if self.instance.is_alive() && self.state() != LifeCycleState::Destroyed {
+            self.instance.quarantine();
         }
     }
 
@@ -201,7 +201,7 @@ impl Component {
 
     /// From now on this same instance is another incarnation.
     pub fn begin_incarnation(&mut self, incarnation: u32) {
-        self.guarded.forget_allocations();
+        self.instance.forget_allocations();
         self.enter_incarnation(incarnation);
     }
 

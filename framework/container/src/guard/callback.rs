@@ -66,4 +66,6 @@ pub enum Ending {
     Left(Exit),
     /// It cannot be called: it has ended before.
     Gone,
+    /// The process that it runs in has ended.
+    HostEnded,
 }

@@ -28,6 +28,19 @@ pub struct ForeignText {
 const LONGEST_TEXT: usize = 4096;
 
 impl ForeignBytes {
+    /// Memory by its address.
+    pub fn at(address: usize, size: usize) -> Self {
+        Self::new(std::ptr::with_exposed_provenance(address), size)
+    }
+
+    /// Copies them to the first of other such bytes; false if those are fewer, or either are not
+    /// accessible.
+    #[must_use]
+    pub fn copy_into(self, to: ForeignBytesMut) -> bool {
+        // SAFETY: neither side is ours; what is not accessible gives a 'no'.
+        self.size <= to.size && unsafe { guarded_copy(to.data, self.data, self.size) }
+    }
+
     pub(super) fn new(data: *const u8, size: usize) -> Self {
         Self { data, size }
     }
@@ -46,6 +59,16 @@ impl ForeignBytes {
 }
 
 impl ForeignBytesMut {
+    /// Bytes of ours that are filled like a component's, until the borrow ends.
+    pub fn of(bytes: &mut [u8]) -> Self {
+        Self::new(bytes.as_mut_ptr(), bytes.len())
+    }
+
+    /// Where they are.
+    pub fn address(self) -> *mut u8 {
+        self.data
+    }
+
     /// Memory that a component has registered, by its address.
     pub fn at(address: usize, size: usize) -> Self {
         let data = std::ptr::with_exposed_provenance_mut(address);
@@ -76,6 +99,11 @@ impl ForeignBytesMut {
 }
 
 impl ForeignText {
+    /// Text in such bytes.
+    pub fn of(bytes: ForeignBytes) -> Self {
+        Self { bytes }
+    }
+
     pub(super) fn new(text: Text) -> Self {
         Self {
             bytes: ForeignBytes {

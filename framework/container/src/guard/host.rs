@@ -53,6 +53,11 @@ pub trait HostServices {
     /// container's for all else. (By reference: the fields were just
     /// written one by one, and a copy would wait for all of them.)
     fn answer(&mut self, request: &Request) -> u64;
+
+    /// Whether the data that an input reads wait in a queue, each to be read once.
+    fn has_queue(&self, _port: u32) -> bool {
+        false
+    }
 }
 
 /// Answers a request on behalf of the services behind the pointer.

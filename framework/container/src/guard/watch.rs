@@ -65,7 +65,7 @@ impl Inside {
 
 /// Being inside a callback.
 #[derive(Debug)]
-pub(super) struct Watched {
+pub(crate) struct Watched {
     own: u64,
     outer: u64,
 }
@@ -123,6 +123,11 @@ impl Watch {
         self.hurry.store(limit.0, Ordering::Relaxed);
     }
 
+    /// The limit for as long as somebody waits; [`CallLimit::NONE`] if nobody does.
+    pub fn hurry_limit(&self) -> CallLimit {
+        CallLimit(self.hurry.load(Ordering::Relaxed))
+    }
+
     /// Lets the handler break this generation off; called by the watchdog.
     pub fn condemn(&self, generation: u32) {
         let condemned = CONDEMNED | u64::from(generation);
@@ -145,7 +150,7 @@ impl Watch {
     }
 
     #[inline]
-    pub(super) fn enter(&self, limit: CallLimit) -> Watched {
+    pub(crate) fn enter(&self, limit: CallLimit) -> Watched {
         let generation = self.generation.load(Ordering::Relaxed).wrapping_add(1);
         self.generation.store(generation, Ordering::Relaxed);
         let outer = self.inside.load(Ordering::Relaxed);
@@ -169,7 +174,7 @@ impl Watch {
     }
 
     #[inline]
-    pub(super) fn leave(&self, watched: Watched) {
+    pub(crate) fn leave(&self, watched: Watched) {
         self.inside.store(watched.outer, Ordering::Relaxed);
     }
 

@@ -7,7 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use crossbeam::queue::ArrayQueue;
 use fault_manager::{Evidence, Verdict};
 
-use crate::guard::Scene;
+use crate::component::Scene;
 
 /// Scenes that may wait: as many as a robot has components when all of them fail at once.
 const WAITING: usize = 64;

@@ -43,7 +43,8 @@ impl Standbys {
 
     /// Variants of which the rules want one prepared, and none is.
     pub fn wanting(&self) -> Vec<usize> {
-        let ready = self.ready();
+        let mut ready = self.ready();
+        ready.retain(|standby| standby.component.is_fit());
         let variants = self.factory.variants().iter().enumerate();
         variants
             .filter(|(index, variant)| {
@@ -79,6 +80,7 @@ impl Standbys {
     /// An instance of a variant, and how far it was prepared.
     pub(super) fn take(&self, variant: usize) -> Result<(Component, &'static str), String> {
         let mut ready = self.ready();
+        ready.retain(|standby| standby.component.is_fit());
         let found = ready.iter().position(|standby| standby.variant == variant);
         if let Some(found) = found {
             let component = ready.swap_remove(found).component;

@@ -146,6 +146,32 @@ pub struct IsolationRule {
     pub tier: IsolationTier,
     /// Components of the same group share a host process.
     pub group: Option<String>,
+    /// Bounds of the host process; of a group those of the component that is started first.
+    pub limits: ProcessLimits,
+}
+
+/// Bounds of a host process; what is not said is not bounded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ProcessLimits {
+    /// Private writable memory, in bytes.
+    pub memory_bytes: Option<u64>,
+    /// Open files.
+    pub open_files: Option<u64>,
+    /// Processor time since the process was started, in seconds.
+    pub processor_time_s: Option<u64>,
+    /// Whether the system calls are refused that reach beyond the process.
+    pub filters_system_calls: bool,
+}
+
+impl Default for ProcessLimits {
+    fn default() -> Self {
+        Self {
+            memory_bytes: None,
+            open_files: None,
+            processor_time_s: None,
+            filters_system_calls: true,
+        }
+    }
 }
 
 /// How far a component is separated from the others.

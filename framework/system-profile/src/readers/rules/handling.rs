@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use system_model::profile::Located;
 use system_model::rules::{
-    ActuatorRule, FaultRule, IsolationRule, IsolationTier, MAX_RETRY_MAX, PortChecks, Preload,
-    RecoveryRule, ResurrectRule, StopCategory,
+    ActuatorRule, FaultRule, MAX_RETRY_MAX, PortChecks, Preload, RecoveryRule, ResurrectRule,
+    StopCategory,
 };
 
 use super::declared::DeclaredSecondary;
@@ -13,7 +13,6 @@ use super::detection::safe_values;
 use super::diagnosis::APPLICATION_SEVERITIES;
 use super::measure::{duration, located, positive_duration, required, setting, text};
 use crate::node::Node;
-use crate::suggest::quoted;
 use crate::value::Value;
 
 /// `resurrect`.
@@ -184,31 +183,6 @@ fn command(node: &Node<'_>) -> Option<Command> {
         );
     }
     Some((port?.located(), checks))
-}
-
-/// `isolation`.
-pub(super) fn isolation(node: &Node<'_>) -> Option<Located<IsolationRule>> {
-    let node = node.child("isolation")?;
-    let tier = node.text().choice(&[
-        ("guarded", IsolationTier::Guarded),
-        ("process", IsolationTier::Process),
-    ]);
-    let group = node.attribute("group");
-    if let Some(group) = group
-        .as_ref()
-        .filter(|_| tier == Some(IsolationTier::Guarded))
-    {
-        group.error(
-            format!(
-                "group `{}` of a component that is guarded",
-                quoted(group.as_str())
-            ),
-            Some("only components in a process of their own share one; write process".into()),
-        );
-    }
-    let group = group.map(|group| group.as_str().to_owned());
-    node.finish();
-    Some(located(&node, IsolationRule { tier: tier?, group }))
 }
 
 /// A reference to a file of the task adaptation.

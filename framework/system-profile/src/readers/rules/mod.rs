@@ -6,6 +6,7 @@ mod declared;
 mod detection;
 mod diagnosis;
 mod handling;
+mod isolation;
 pub(super) mod measure;
 mod monitor;
 
@@ -109,7 +110,7 @@ pub(crate) fn component_elements(node: &Node<'_>, name: &Located<String>) -> Dec
         secondaries: Vec::new(),
         recovery: handling::recovery(node),
         actuator,
-        isolation: handling::isolation(node),
+        isolation: isolation::isolation(node),
         adapt: handling::reference(node, "adapt"),
         handle: handling::reference(node, "handle"),
     };
