@@ -16,6 +16,7 @@ pub mod guard;
 pub mod injection;
 pub mod lane;
 pub mod library;
+pub mod persistence;
 pub mod port;
 pub mod schedule;
 pub mod status;
