@@ -2,6 +2,7 @@
 
 mod cell;
 mod checkpoint;
+mod inheritance;
 mod injected;
 mod judgement;
 mod limits;
@@ -27,6 +28,7 @@ use limits::Limits;
 pub(crate) use cell::mark_lost;
 pub use cell::{ComponentCell, Entered};
 pub use checkpoint::Checkpoints;
+pub use inheritance::Inheritance;
 pub use limits::CallLimits;
 pub use port_end::{
     BoundMethod, Calls, DataInput, DataOutput, EventOutput, Inbox, PortEnd, Provider,
@@ -219,7 +221,7 @@ impl Component {
         if let Some(checkpoints) = &mut self.checkpoints
             && recorded.is_ok()
         {
-            checkpoints.take_if_due(&self.services);
+            checkpoints.take_if_due(&self.services, self.variant);
         }
     }
 

@@ -7,7 +7,9 @@
 
 use std::time::Duration;
 
+use super::inheritance::Inheritance;
 use super::services::Services;
+use crate::persistence::CopySender;
 
 /// Copies that are kept. The oldest is two periods older than the newest: enough for a fault that
 /// is found some cycles after it began.
@@ -24,6 +26,10 @@ pub struct Checkpoints {
     /// Number of the copy that was taken last, counted from 1.
     sequence: u64,
     copies: [Copy; KEPT],
+    /// Where copies go that outlive the container.
+    pub(super) disk: Option<CopySender>,
+    /// What a run that died has left, until it is restored.
+    pub(super) inheritance: Option<Inheritance>,
 }
 
 #[derive(Debug, Default)]
@@ -54,19 +60,22 @@ impl Checkpoints {
             due_ns: 0,
             sequence: 0,
             copies: Default::default(),
+            disk: None,
+            inheritance: None,
         }
     }
 
-    /// Copies the registered memory if the period is over and the cycle's outputs were good.
+    /// Copies the registered memory of an instance of the library `variant` if the period is over and
+    /// the cycle's outputs were good.
     #[inline]
-    pub(super) fn take_if_due(&mut self, services: &Services) {
+    pub(super) fn take_if_due(&mut self, services: &Services, variant: usize) {
         let now_ns = services.cycle_ns();
         if now_ns >= self.due_ns && !services.is_contaminated() {
-            self.take(now_ns, services);
+            self.take(now_ns, services, variant);
         }
     }
 
-    fn take(&mut self, now_ns: u64, services: &Services) {
+    fn take(&mut self, now_ns: u64, services: &Services, variant: usize) {
         let Some(memory) = services.critical_memory() else {
             return;
         };
@@ -83,6 +92,30 @@ impl Checkpoints {
         copy.taken_ns = now_ns;
         copy.sequence = next;
         self.sequence = next;
+        if let Some(disk) = &mut self.disk {
+            disk.send(variant, services.incarnation(), next, now_ns, &copy.bytes);
+        }
+    }
+
+    /// A copy that is older than all that are taken here, and has this number.
+    pub(super) fn inherit(&mut self, sequence: u64, bytes: Vec<u8>) {
+        self.sequence = sequence;
+        self.copies[(sequence % KEPT as u64) as usize] = Copy {
+            sequence,
+            taken_ns: 0,
+            checksum: CHECKSUM.checksum(&bytes),
+            bytes,
+        };
+    }
+
+    /// The copy of this number was restored: on the disk, too, it is the newest now, because those
+    /// that were taken after it may be contaminated.
+    pub(super) fn send_again(&mut self, sequence: u64, services: &Services, variant: usize) {
+        let copy = &self.copies[(sequence % KEPT as u64) as usize];
+        if let Some(disk) = &mut self.disk {
+            let incarnation = services.incarnation();
+            disk.send(variant, incarnation, sequence, copy.taken_ns, &copy.bytes);
+        }
     }
 
     /// The newest whole copy that was taken before `before_ns`; how many were found broken.

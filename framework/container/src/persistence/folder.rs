@@ -128,12 +128,16 @@ impl Store {
     ///
     /// # Errors
     /// The first one that cannot be removed; the others are.
-    pub fn clear(&self) -> io::Result<()> {
+    pub fn clear(&self) -> Result<(), StoreError> {
+        let unusable = |error| StoreError::Unusable {
+            folder: self.folder.clone(),
+            error,
+        };
         let mut result = Ok(());
-        for entry in std::fs::read_dir(&self.folder)? {
-            let path = entry?.path();
+        for entry in std::fs::read_dir(&self.folder).map_err(unusable)? {
+            let path = entry.map_err(unusable)?.path();
             if is_of_slots(&path) {
-                result = result.and(std::fs::remove_file(&path));
+                result = result.and(std::fs::remove_file(&path).map_err(unusable));
             }
         }
         result

@@ -155,6 +155,18 @@ pub enum Refusal {
 }
 
 impl Record {
+    /// One without memory, which was never written.
+    pub fn new(origin: Origin) -> Self {
+        Self {
+            origin,
+            written: 0,
+            sequence: 0,
+            incarnation: 0,
+            taken: Duration::ZERO,
+            memory: Vec::new(),
+        }
+    }
+
     /// Writes it to `bytes`, in place of what was in there.
     pub fn encode(&self, bytes: &mut Vec<u8>) {
         bytes.clear();
