@@ -17,21 +17,21 @@ const WRITTEN_LIMIT: Duration = Duration::from_secs(60);
 /// A process that was killed is gone at once.
 const KILL_LIMIT: Duration = Duration::from_secs(30);
 
-/// A counter whose numbers outlive the container, with these attributes of its rule, and who receives
-/// them.
-fn counting_with(attributes: &str) -> Application {
+/// A counter's numbers outlive the container.
+const RULE: &str = "<component name='counter'><resurrect><reset>true</reset>\
+                    <backup persist='true'>10</backup></resurrect></component>";
+
+/// A counter whose numbers are received, by these rules.
+fn counting_by(rules: &str) -> Application {
     Application::new()
         .with(&Member::new("counter", "counter").property("remembers", "true"))
         .with(&Member::new("recorder", "recorder").property("verbose", "true"))
         .connect("data", "counter.output", "recorder.input")
-        .rules(&format!(
-            "<component name='counter'><resurrect><reset>true</reset>\
-             <backup persist='true'{attributes}>10</backup></resurrect></component>"
-        ))
+        .rules(rules)
 }
 
 fn counting() -> Application {
-    counting_with("")
+    counting_by(RULE)
 }
 
 /// Where the harness lets a run look for state.
@@ -213,12 +213,36 @@ fn simulated_time_leaves_the_disk_alone() {
 
 #[test]
 fn without_such_a_rule_nothing_is_written() {
-    let application = Application::new()
-        .with(&Member::new("counter", "counter").property("remembers", "true"))
-        .rules(
-            "<component name='counter'><resurrect><reset>true</reset>\
-             <backup>10</backup></resurrect></component>",
-        );
+    let application = counting_by(&RULE.replace("'true'", "'false'"));
     let _in_order = application.run_really("300ms").ended_well();
     assert!(!application.folder().join("state").exists());
+}
+
+/// The state of an application is the same whether it runs alone or with others.
+#[test]
+fn each_application_has_a_state_of_its_own() {
+    let [one, other] = ["one", "other"].map(|name| {
+        let application = counting();
+        let text = std::fs::read_to_string(application.profile()).expect("it was written");
+        let named = text.replace("<name>application</name>", &format!("<name>{name}</name>"));
+        application.write("named.xml", named);
+        let rules = format!("<fault_rules application='{name}'>{RULE}</fault_rules>");
+        let rules = application.write("named_rules.xml", rules);
+        (application, rules.display().to_string())
+    });
+    let files = [&one, &other].map(|(application, _)| application.folder().join("named.xml"));
+    let rules = ["--rules", &one.1, "--rules", &other.1];
+    let run = one.0.start_files(&files, &rules);
+    let state = one.0.folder().join("state/steadfast");
+    let written = |name: &str| state.join(name).join("counter.b").exists();
+    assert!(until(WRITTEN_LIMIT, || written("one") && written("other")));
+    kill(run);
+    let arguments = ["--rules", &one.1, "--for", "200ms"];
+    let outcome = one.0.run_file(&files[0], &arguments).ended_well();
+    assert!(restored(&outcome).is_some());
+    assert!(!written("one") && written("other"));
+    let together = [&rules[..], &["--for", "200ms"]].concat();
+    let outcome = one.0.run_together(&files, &together).ended_well();
+    let restored = |name: &str| outcome.events("checkpoint_restored", name).len();
+    assert_eq!((restored("one/counter"), restored("other/counter")), (0, 1));
 }

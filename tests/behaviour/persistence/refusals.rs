@@ -69,7 +69,7 @@ fn what_is_foreign_is_refused_and_the_component_begins_anew() {
 
 #[test]
 fn what_is_stale_is_refused() {
-    let application = counting_with(" max_age='1ms'");
+    let application = counting_by(&RULE.replace("'true'", "'true' max_age='1ms'"));
     run_and_kill(&application);
     let outcome = application.run_really("200ms").ended_well();
     began_anew(&outcome);

@@ -110,10 +110,9 @@ impl Checkpoints {
 
     /// The copy of this number was restored: on the disk, too, it is the newest now, because those
     /// that were taken after it may be contaminated.
-    pub(super) fn send_again(&mut self, sequence: u64, services: &Services, variant: usize) {
+    pub(super) fn send_again(&mut self, sequence: u64, variant: usize, incarnation: u32) {
         let copy = &self.copies[(sequence % KEPT as u64) as usize];
         if let Some(disk) = &mut self.disk {
-            let incarnation = services.incarnation();
             disk.send(variant, incarnation, sequence, copy.taken_ns, &copy.bytes);
         }
     }
@@ -164,6 +163,32 @@ impl Checkpoints {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::persistence::handover;
+
+    #[test]
+    fn a_copy_that_was_restored_is_the_newest_on_the_disk() {
+        let mut checkpoints = Checkpoints::new(Duration::from_millis(1));
+        let (sender, mut receiver) = handover(1);
+        checkpoints.disk = Some(sender);
+        for taken_ns in [10, 20, 30] {
+            checkpoints.keep(taken_ns, &[0]);
+        }
+        checkpoints.send_again(2, 1, 7);
+        let sent = receiver.take().expect("it was sent");
+        assert_eq!((sent.sequence, sent.taken_ns), (2, 20));
+        assert_eq!((sent.variant, sent.incarnation), (1, 7));
+    }
+
+    #[test]
+    fn what_was_inherited_is_older_than_all_else() {
+        let mut checkpoints = Checkpoints::new(Duration::from_millis(1));
+        checkpoints.inherit(41, vec![1]);
+        checkpoints.keep(10, &[2]);
+        for (before_ns, expected) in [(1, 41), (11, 42)] {
+            let (found, broken) = checkpoints.newest_before(before_ns);
+            assert_eq!((found.expect("a copy").sequence, broken), (expected, 0));
+        }
+    }
 
     #[test]
     fn the_newest_copy_before_the_symptom_is_restored_and_no_broken_one() {

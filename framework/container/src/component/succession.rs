@@ -194,7 +194,7 @@ impl Component {
             );
         }
         let sequence = found.sequence;
-        checkpoints.send_again(sequence, &self.services, self.variant);
+        checkpoints.send_again(sequence, self.variant, self.services.incarnation());
         (true, format!("checkpoint {sequence} restored{broken}"))
     }
 
