@@ -64,7 +64,6 @@ pub struct System {
     left_behind: LeftBehind,
     supervisor: Arc<Supervisor>,
     manager_threads: ManagerThreads,
-    /// What of it outlives the container.
     persistence: Persistence,
     writer: EventWriter,
 }
