@@ -116,7 +116,9 @@ impl Persistence {
             }
             self.stores.push(store);
         }
-        self.writer = Some(Writer::start(kept, Arc::clone(environment))?);
+        if !kept.is_empty() {
+            self.writer = Some(Writer::start(kept, Arc::clone(environment))?);
+        }
         Ok(())
     }
 
