@@ -170,18 +170,30 @@ fn state_lies_where_the_option_says() {
     assert!(!folder(&application).exists());
 }
 
-/// A component that dies before its first own checkpoint goes on from the inherited one again.
+/// A component that dies before its first own checkpoint, or while it is initialised, goes on from the
+/// inherited one by its recovery.
 #[test]
-fn a_crash_in_the_first_cycle_does_not_lose_it() {
-    let application =
-        counting().injections("<inject at_cycle='1' component='counter' fault='segfault'/>");
-    // Of the first run it is the state after its reset.
-    let (newest, _) = run_and_kill(&application).remove(0);
-    let outcome = application.run_really("500ms").ended_well();
-    assert_eq!(outcome.faults("counter").len(), 1);
-    let note = format!("checkpoint {} restored", newest.sequence);
-    assert!(outcome.notes()[0].ends_with(&note), "{:?}", outcome.notes());
-    assert_eq!(numbers(&outcome).first(), Some(&(number(&newest) + 1)));
+fn an_early_crash_does_not_lose_it() {
+    for place in ["at_cycle='1'", "callback='onInitialize'"] {
+        let application = counting().injections(&format!(
+            "<inject {place} component='counter' fault='segfault'/>"
+        ));
+        // Of the first run it is the state after its reset.
+        let (newest, _) = run_and_kill(&application).remove(0);
+        let outcome = application.run_really("500ms").ended_well();
+        assert_eq!(outcome.faults("counter").len(), 1, "{place}");
+        let note = format!("checkpoint {} restored", newest.sequence);
+        let notes = outcome.notes();
+        assert!(notes[0].ends_with(&note), "{place}: {notes:?}");
+        let first = numbers(&outcome).first().copied();
+        assert_eq!(first, Some(number(&newest) + 1), "{place}");
+        let incarnation = newest.incarnation + 2;
+        assert_eq!(
+            outcome.component("counter")["incarnation"],
+            incarnation,
+            "{place}"
+        );
+    }
 }
 
 /// State that a component cannot go on from does not keep the robot from starting.
