@@ -39,11 +39,12 @@ fn ten_thousand_faults_leave_only_the_abandoned_instances() {
     assert!(growth < bound, "{growth} KiB of at most {bound}: {figures}");
 }
 
-/// Data through every kind of queue, events, calls: the container allocates nothing for them.
+/// Data through every kind of queue, events, calls, checkpoints and their way to the disk: the container
+/// allocates nothing for them.
 #[test]
 fn nothing_on_the_path_allocates() {
     let application = Application::new()
-        .with(&Member::new("counter", "counter"))
+        .with(&Member::new("counter", "counter").property("remembers", "true"))
         .with(&Member::new("first", "echo").queue("FIFO", 8))
         .with(&Member::new("second", "echo").queue("LIFO", 8))
         .with(

@@ -16,6 +16,7 @@ mod injections;
 mod life_cycle;
 mod manager_ports;
 mod memory;
+mod persistence;
 mod ports;
 mod readme;
 mod recovery;

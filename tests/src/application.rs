@@ -270,6 +270,8 @@ impl Application {
             .arg("--summary")
             .arg(self.folder().join(SUMMARY))
             .env("XDG_RUNTIME_DIR", self.folder())
+            .env("XDG_STATE_HOME", self.folder().join("state"))
+            .env_remove("STATE_DIRECTORY")
             .env_remove("STEADFAST_LIBRARY_PATH");
         Watched::spawn(&mut command)
     }

@@ -2,6 +2,7 @@
 
 mod cell;
 mod checkpoint;
+mod inheritance;
 mod injected;
 mod instance;
 mod judgement;
@@ -28,6 +29,7 @@ use limits::Limits;
 pub(crate) use cell::mark_lost;
 pub use cell::{ComponentCell, Entered};
 pub use checkpoint::Checkpoints;
+pub use inheritance::Inheritance;
 pub use instance::{Instance, Scene, Stray};
 pub use limits::CallLimits;
 pub use port_end::{
@@ -223,7 +225,7 @@ impl Component {
         if let Some(checkpoints) = &mut self.checkpoints
             && recorded.is_ok()
         {
-            checkpoints.take_if_due(&self.services);
+            checkpoints.take_if_due(&self.services, self.variant);
         }
     }
 

@@ -82,6 +82,17 @@ pub enum Event {
         /// When it was written, in nanoseconds of the container's clock.
         stamp_ns: u64,
     },
+    /// A component goes on from what a run that died has left on the disk.
+    CheckpointRestored {
+        /// Instance name.
+        component: String,
+        /// Incarnation that goes on.
+        incarnation: u32,
+        /// Number of the checkpoint.
+        sequence: u64,
+        /// How old it is, in milliseconds by the machine's clock.
+        age_ms: u64,
+    },
     /// What the fault manager made of a fault; the last one of an `id` counts.
     Verdict(Box<Verdict>),
     /// An executor did not finish its cycle within its period.

@@ -17,6 +17,7 @@ pub mod host;
 pub mod injection;
 pub mod lane;
 pub mod library;
+pub mod persistence;
 pub mod port;
 pub mod schedule;
 pub mod status;

@@ -3,6 +3,7 @@
 mod agenda;
 mod applications;
 mod options;
+mod persistence;
 mod real_time;
 mod stages;
 mod start_error;
@@ -31,7 +32,8 @@ pub use agenda::Failure;
 use agenda::LeftBehind;
 pub use applications::Application;
 use applications::Applications;
-pub use options::{ClockKind, RunOptions};
+pub use options::{ClockKind, RunOptions, StateOptions};
+use persistence::Persistence;
 use real_time::WorldThread;
 pub use start_error::StartError;
 use supervise::{inject, supervise};
@@ -62,6 +64,7 @@ pub struct System {
     left_behind: LeftBehind,
     supervisor: Arc<Supervisor>,
     manager_threads: ManagerThreads,
+    persistence: Persistence,
     writer: EventWriter,
 }
 
@@ -102,6 +105,7 @@ impl System {
         inject(&applications.injections, &assembly, &environment).map_err(StartError::Assembly)?;
         let (supervisor, wanted) =
             supervise(&applications, &assembly, &environment).map_err(StartError::Assembly)?;
+        let persistence = Persistence::new(&applications, &assembly.factories);
         let Assembly {
             components,
             statuses,
@@ -124,6 +128,7 @@ impl System {
             lanes: Vec::new(),
             supervisor: Arc::new(supervisor),
             manager_threads: ManagerThreads::default(),
+            persistence,
             writer,
         };
         if let Err(error) = system.bring_up() {
@@ -132,6 +137,8 @@ impl System {
             return Err(error);
         }
         if let Err(error) = system.launch(executors, wanted) {
+            // What is on the disk is for the next try.
+            system.persistence = Persistence::default();
             let _nothing_to_sum_up = system.stop("start_refused");
             return Err(error);
         }
@@ -211,6 +218,7 @@ impl System {
             world_thread.stop();
         }
         self.shut_down(remaining(deadline).max(STOP_LIMIT / 3));
+        self.persistence.end(&self.environment);
         self.record_end(reason);
         (summary, self.close().err())
     }

@@ -100,7 +100,7 @@ mod tests {
             value: ResurrectRule {
                 reset,
                 backup: None,
-                persist: false,
+                persist: None,
             },
             place: Place::default(),
         });

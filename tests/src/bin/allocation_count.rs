@@ -16,7 +16,8 @@ use container::assembly::Assembly;
 use container::component::ComponentCell;
 use container::executor::Executor;
 use container::guard::loss::LostThread;
-use container::lane::{Crew, Lane, Work};
+use container::lane::{Crew, Lane, SETUP_TOKEN, Work};
+use container::persistence::{CopyReceiver, handover};
 use system_model::life_cycle::Operation;
 use tests::{assembled, environment};
 
@@ -25,6 +26,9 @@ const WARM_UP_CYCLES: u64 = 1_000;
 
 /// Cycles in which nothing may be allocated.
 const CYCLES: u64 = 100_000;
+
+/// What the components that register memory register.
+const CRITICAL_BYTES: usize = 16;
 
 /// More than the cycles take on a slow machine.
 const LIMIT: Duration = Duration::from_secs(300);
@@ -123,6 +127,18 @@ fn main() {
     println!("{allocations}");
 }
 
+/// Checkpoints of every cycle that are handed over to be written; the ends at which they arrive.
+fn persist(components: &[Arc<ComponentCell>]) -> Vec<CopyReceiver> {
+    let hand_over = |component: &Arc<ComponentCell>| {
+        let (sender, receiver) = handover(CRITICAL_BYTES);
+        let mut component = component.enter(SETUP_TOKEN, Duration::ZERO).expect("free");
+        component.keep_checkpoints(Duration::from_nanos(1));
+        component.persist_checkpoints(sender);
+        receiver
+    };
+    components.iter().map(hand_over).collect()
+}
+
 fn count(application: &Path, libraries: &Path) -> u64 {
     let (environment, writer) = environment();
     let Assembly {
@@ -130,6 +146,7 @@ fn count(application: &Path, libraries: &Path) -> u64 {
         executors,
         ..
     } = assembled(application, libraries, &environment);
+    let mut handed_over = persist(&components);
     let allocations = Arc::new(Mutex::new(None));
     let work = Cycles {
         components,
@@ -143,6 +160,8 @@ fn count(application: &Path, libraries: &Path) -> u64 {
     crew.dismiss();
     environment.events.finish();
     writer.close().expect("no file to fail");
+    let arrived = handed_over.iter_mut().any(|it| it.take().is_some());
+    assert!(arrived, "a component has checkpoints");
     let counted = *allocations.lock().expect("not poisoned");
     counted.expect("the cycles were run to their end")
 }

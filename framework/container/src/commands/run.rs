@@ -20,7 +20,7 @@ use container::assembly::LibraryOptions;
 use container::control::Server;
 use container::library::LibrarySearch;
 use container::summary::Summary;
-use container::system::{Application, ClockKind, RunOptions, System};
+use container::system::{Application, ClockKind, RunOptions, StateOptions, System};
 use crossbeam::channel::bounded;
 use robot_simulation::Simulation;
 use system_profile::{Problem, load_world};
@@ -84,6 +84,13 @@ pub struct RunArguments {
     /// Also look for referenced profiles in this folder; may be given several times
     #[arg(long = "search-path", value_name = "FOLDER")]
     search_path: Vec<PathBuf>,
+    /// Where checkpoints lie that outlive the container (`<backup persist="true">`); without it
+    /// $STATE_DIRECTORY, $XDG_STATE_HOME/steadfast or ~/.local/state/steadfast
+    #[arg(long, value_name = "FOLDER")]
+    state_path: Option<PathBuf>,
+    /// Remove the checkpoints of a run that died, instead of going on from them
+    #[arg(long)]
+    fresh: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -121,6 +128,10 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         events: arguments.events.clone(),
         echo: Some(echo),
         libraries: libraries(arguments),
+        state: StateOptions {
+            folder: arguments.state_path.clone(),
+            fresh: arguments.fresh,
+        },
     };
     let started = System::start(applications, simulation, options);
     let system = started.map_err(|error| refused(&error))?;

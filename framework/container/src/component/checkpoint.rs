@@ -7,7 +7,9 @@
 
 use std::time::Duration;
 
+use super::inheritance::Inheritance;
 use super::services::Services;
+use crate::persistence::CopySender;
 
 /// Copies that are kept. The oldest is two periods older than the newest: enough for a fault that
 /// is found some cycles after it began.
@@ -24,6 +26,10 @@ pub struct Checkpoints {
     /// Number of the copy that was taken last, counted from 1.
     sequence: u64,
     copies: [Copy; KEPT],
+    /// Where copies go that outlive the container.
+    pub(super) disk: Option<CopySender>,
+    /// What a run that died has left, until it is restored.
+    pub(super) inheritance: Option<Inheritance>,
 }
 
 #[derive(Debug, Default)]
@@ -54,19 +60,22 @@ impl Checkpoints {
             due_ns: 0,
             sequence: 0,
             copies: Default::default(),
+            disk: None,
+            inheritance: None,
         }
     }
 
-    /// Copies the registered memory if the period is over and the cycle's outputs were good.
+    /// Copies the registered memory of an instance of the library `variant` if the period is over and
+    /// the cycle's outputs were good.
     #[inline]
-    pub(super) fn take_if_due(&mut self, services: &Services) {
+    pub(super) fn take_if_due(&mut self, services: &Services, variant: usize) {
         let now_ns = services.cycle_ns();
         if now_ns >= self.due_ns && !services.is_contaminated() {
-            self.take(now_ns, services);
+            self.take(now_ns, services, variant);
         }
     }
 
-    fn take(&mut self, now_ns: u64, services: &Services) {
+    fn take(&mut self, now_ns: u64, services: &Services, variant: usize) {
         let Some(memory) = services.critical_memory() else {
             return;
         };
@@ -83,6 +92,29 @@ impl Checkpoints {
         copy.taken_ns = now_ns;
         copy.sequence = next;
         self.sequence = next;
+        if let Some(disk) = &mut self.disk {
+            disk.send(variant, services.incarnation(), next, now_ns, &copy.bytes);
+        }
+    }
+
+    /// A copy that is older than all that are taken here, and has this number.
+    pub(super) fn inherit(&mut self, sequence: u64, bytes: Vec<u8>) {
+        self.sequence = sequence;
+        self.copies[(sequence % KEPT as u64) as usize] = Copy {
+            sequence,
+            taken_ns: 0,
+            checksum: CHECKSUM.checksum(&bytes),
+            bytes,
+        };
+    }
+
+    /// The copy of this number was restored: on the disk, too, it is the newest now, because those
+    /// that were taken after it may be contaminated.
+    pub(super) fn send_again(&mut self, sequence: u64, variant: usize, incarnation: u32) {
+        let copy = &self.copies[(sequence % KEPT as u64) as usize];
+        if let Some(disk) = &mut self.disk {
+            disk.send(variant, incarnation, sequence, copy.taken_ns, &copy.bytes);
+        }
     }
 
     /// The newest whole copy that was taken before `before_ns`; how many were found broken.
@@ -131,6 +163,32 @@ impl Checkpoints {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::persistence::handover;
+
+    #[test]
+    fn a_copy_that_was_restored_is_the_newest_on_the_disk() {
+        let mut checkpoints = Checkpoints::new(Duration::from_millis(1));
+        let (sender, mut receiver) = handover(1);
+        checkpoints.disk = Some(sender);
+        for taken_ns in [10, 20, 30] {
+            checkpoints.keep(taken_ns, &[0]);
+        }
+        checkpoints.send_again(2, 1, 7);
+        let sent = receiver.take().expect("it was sent");
+        assert_eq!((sent.sequence, sent.taken_ns), (2, 20));
+        assert_eq!((sent.variant, sent.incarnation), (1, 7));
+    }
+
+    #[test]
+    fn what_was_inherited_is_older_than_all_else() {
+        let mut checkpoints = Checkpoints::new(Duration::from_millis(1));
+        checkpoints.inherit(41, vec![1]);
+        checkpoints.keep(10, &[2]);
+        for (before_ns, expected) in [(1, 41), (11, 42)] {
+            let (found, broken) = checkpoints.newest_before(before_ns);
+            assert_eq!((found.expect("a copy").sequence, broken), (expected, 0));
+        }
+    }
 
     #[test]
     fn the_newest_copy_before_the_symptom_is_restored_and_no_broken_one() {

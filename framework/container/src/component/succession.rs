@@ -193,10 +193,9 @@ impl Component {
                 ),
             );
         }
-        (
-            true,
-            format!("checkpoint {} restored{broken}", found.sequence),
-        )
+        let sequence = found.sequence;
+        checkpoints.send_again(sequence, self.variant, self.services.incarnation());
+        (true, format!("checkpoint {sequence} restored{broken}"))
     }
 
     /// From now on this same instance is another incarnation.

@@ -21,6 +21,8 @@ const ENTER_LIMIT: Duration = Duration::from_millis(100);
 pub(super) enum Step {
     /// Make the instance.
     Construct,
+    /// Give it what a run that died has left.
+    Inherit,
     /// Prepare its standbys.
     Standby,
     /// A life-cycle operation.
@@ -145,6 +147,10 @@ impl Agenda {
         let result = match self.steps[step] {
             Step::Construct => component.construct(lane.loss()),
             Step::Operate(operation) => component.operate(operation, lane.loss()),
+            Step::Inherit => {
+                component.inherit(lane.loss());
+                return;
+            }
             Step::Standby => {
                 drop(component);
                 self.prepares.store(true, Ordering::Relaxed);

@@ -67,4 +67,15 @@ pub struct RunOptions {
     pub echo: Option<Sender<(u64, Event)>>,
     /// How libraries are found and loaded.
     pub libraries: LibraryOptions,
+    /// Where checkpoints lie that outlive the container.
+    pub state: StateOptions,
+}
+
+/// Where checkpoints lie that outlive the container, and what becomes of those that are there.
+#[derive(Debug, Clone, Default)]
+pub struct StateOptions {
+    /// The folder; `None`: that of the environment.
+    pub folder: Option<PathBuf>,
+    /// Those that are there are removed, not restored.
+    pub fresh: bool,
 }

@@ -33,30 +33,30 @@ impl System {
             );
         }
         self.begin_injections();
-        for steps in [
-            [Step::Construct, Step::Operate(Operation::Initialize)].as_slice(),
-            [Step::Standby].as_slice(),
-            [Step::Operate(Operation::Start)].as_slice(),
-        ] {
-            let result = self.perform(steps, false, BRING_UP_LIMIT);
-            match result {
-                Ok(failures) if failures.is_empty() => {}
-                Ok(failures) => {
-                    self.shut_down(STOP_LIMIT);
-                    self.record_end("start_refused");
-                    return Err(StartError::Components(failures));
-                }
-                Err(error) => {
-                    self.shut_down(STOP_LIMIT);
-                    self.record_end("start_refused");
-                    return Err(error);
-                }
-            }
-        }
-        self.check_backups().inspect_err(|_| {
+        self.bring_up_by_steps().inspect_err(|_| {
             self.shut_down(STOP_LIMIT);
             self.record_end("start_refused");
         })
+    }
+
+    fn bring_up_by_steps(&mut self) -> Result<(), StartError> {
+        self.perform_all(&[Step::Construct, Step::Operate(Operation::Initialize)])?;
+        let (options, environment) = (&self.options.state, &self.environment);
+        self.persistence
+            .open(options, &self.components, environment)?;
+        self.perform_all(&[Step::Inherit])?;
+        self.perform_all(&[Step::Standby])?;
+        self.perform_all(&[Step::Operate(Operation::Start)])?;
+        self.check_backups()
+    }
+
+    fn perform_all(&self, steps: &[Step]) -> Result<(), StartError> {
+        let failures = self.perform(steps, false, BRING_UP_LIMIT)?;
+        if failures.is_empty() {
+            Ok(())
+        } else {
+            Err(StartError::Components(failures))
+        }
     }
 
     /// A backup of a component that registers no memory would never hold anything: only now that it

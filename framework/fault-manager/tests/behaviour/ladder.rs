@@ -151,7 +151,7 @@ fn a_checkpoint_from_before_the_first_symptom_is_wanted_where_there_is_a_backup(
     scope.rules.components[0].resurrect = Some(located(ResurrectRule {
         reset: true,
         backup: Some(Duration::from_millis(50)),
-        persist: false,
+        persist: None,
     }));
     let mut bench = Bench::new(vec![scope]);
     bench.now = Duration::from_millis(7);

@@ -153,7 +153,7 @@ fn component_rules() -> impl Strategy<Value = ComponentRules> {
     let resurrect = (any::<bool>(), any::<bool>()).prop_map(|(reset, backup)| ResurrectRule {
         reset,
         backup: backup.then_some(Duration::from_millis(20)),
-        persist: false,
+        persist: None,
     });
     let recovery = (1..100_u64).prop_map(|milliseconds| RecoveryRule {
         deadline: Duration::from_millis(milliseconds),

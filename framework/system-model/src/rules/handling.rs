@@ -16,6 +16,10 @@ pub const DEFAULT_RETRY_MAX: u32 = 3;
 /// KB) in quarantine; this many are 30 MB.
 pub const MAX_RETRY_MAX: u32 = 100;
 
+/// What a robot remembers of where it is and what it was doing: after an hour somebody has moved it,
+/// or the world around it.
+pub const DEFAULT_PERSISTED_MAX_AGE: Duration = Duration::from_secs(60 * 60);
+
 /// `resurrect`: recovery in place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ResurrectRule {
@@ -23,8 +27,9 @@ pub struct ResurrectRule {
     pub reset: bool,
     /// Its registered memory is copied with this period, and restored before `onRecover`.
     pub backup: Option<Duration>,
-    /// `persist`: the copy also outlives the container.
-    pub persist: bool,
+    /// `persist`: the copy also outlives the container, which goes on from one that is no older than
+    /// this (`max_age`).
+    pub persist: Option<Duration>,
 }
 
 /// `fault`: the budget of resets, and what follows when all recovery is exhausted.

@@ -19,9 +19,10 @@ pub use diagnosis::{
     ApplicationSeverity, ComponentSeverity, DependencyRule, DependencySeverity, Entity, Provider,
 };
 pub use handling::{
-    ActuatorRule, DEFAULT_FAULT_WINDOW, DEFAULT_RETRY_MAX, FaultRule, IsolationRule, IsolationTier,
-    MAX_RETRY_MAX, Preload, ProcessLimits, RecoveryRule, ResurrectRule, SafeValue, Secondary,
-    StopCategory, declared_replacement_cost, declared_reset_cost,
+    ActuatorRule, DEFAULT_FAULT_WINDOW, DEFAULT_PERSISTED_MAX_AGE, DEFAULT_RETRY_MAX, FaultRule,
+    IsolationRule, IsolationTier, MAX_RETRY_MAX, Preload, ProcessLimits, RecoveryRule,
+    ResurrectRule, SafeValue, Secondary, StopCategory, declared_replacement_cost,
+    declared_reset_cost,
 };
 pub use monitor::{
     DecisionRule, MonitorRule, ProcessModelRule, RulePort, VotingMethod, VotingRule, VotingSource,

@@ -62,6 +62,27 @@ fn rules_of_ports() {
     assert_eq!(checks.stuck[0].value.count, 10);
 }
 
+/// A copy outlives the container only where a rule says so.
+#[test]
+fn how_long_a_persisted_copy_is_good() {
+    for (attributes, expected) in [
+        ("", None),
+        ("persist='false'", None),
+        ("persist='true'", Some(Duration::from_secs(3600))),
+        (
+            "persist='true' max_age='2min'",
+            Some(Duration::from_secs(120)),
+        ),
+    ] {
+        let backup = format!("<backup {attributes}>40</backup>");
+        let rule = format!("<resurrect><reset>true</reset>{backup}</resurrect>");
+        let project = Project::new();
+        let rules = project.load(&[&of("motor", &rule)]).sound();
+        let resurrect = rules.components[4].resurrect.as_ref().unwrap().value;
+        assert_eq!(resurrect.persist, expected, "{attributes}");
+    }
+}
+
 #[test]
 fn rules_of_components() {
     let project = Project::new();
@@ -107,7 +128,8 @@ fn rules_of_components() {
     assert_eq!(memory.judgement.severity, Some(ComponentSeverity::Stop));
     assert!(memory.judgement.latched && motor.confirmation(&memory.judgement).count == 3);
     let resurrect = motor.resurrect.as_ref().unwrap().value;
-    assert!(resurrect.reset && resurrect.persist);
+    assert!(resurrect.reset);
+    assert_eq!(resurrect.persist, Some(Duration::from_secs(3600)));
     assert_eq!(resurrect.backup, Some(milliseconds(40)));
     let fault = motor.fault.as_ref().unwrap().value;
     assert_eq!(

@@ -38,6 +38,17 @@ fn mistakes_in_inline_rules() {
 }
 
 #[test]
+fn copies_that_do_not_outlive_the_container_have_no_greatest_age() {
+    let project = Project::new();
+    let rule = "<resurrect><reset>true</reset><backup max_age='1min'>40</backup></resurrect>";
+    let loaded = project.load(&[&of("motor", rule)]);
+    assert_eq!(
+        loaded.problems,
+        ["r0:1: a greatest age of copies that do not outlive the container"]
+    );
+}
+
+#[test]
 fn two_rule_files_must_not_contradict_each_other() {
     let project = Project::new();
     let watchdog = |deadline: &str| of("motor", &format!("<watchdog deadline='{deadline}'/>"));

@@ -48,6 +48,15 @@ pub(super) fn describe(event: &Event) -> Option<String> {
         } => format!(
             "{component}: a datum of '{port}' is set aside, two incarnations died with it in work"
         ),
+        Event::CheckpointRestored {
+            component,
+            sequence,
+            age_ms,
+            ..
+        } => {
+            let age = std::time::Duration::from_millis(*age_ms);
+            format!("{component}: goes on from checkpoint {sequence}, {age:.1?} old")
+        }
         Event::Overrun {
             executor, late_ns, ..
         } => {

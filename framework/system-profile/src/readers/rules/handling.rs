@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use system_model::profile::Located;
 use system_model::rules::{
-    ActuatorRule, FaultRule, MAX_RETRY_MAX, PortChecks, Preload, RecoveryRule, ResurrectRule,
-    StopCategory,
+    ActuatorRule, DEFAULT_PERSISTED_MAX_AGE, FaultRule, MAX_RETRY_MAX, PortChecks, Preload,
+    RecoveryRule, ResurrectRule, StopCategory,
 };
 
 use super::declared::DeclaredSecondary;
@@ -27,7 +27,7 @@ pub(super) fn resurrect(node: &Node<'_>) -> Option<Located<ResurrectRule>> {
             let (period, persist) = backup?;
             (Some(period), persist)
         }
-        None => (None, false),
+        None => (None, None),
     };
     if period.is_some() && !reset {
         node.error(
@@ -44,11 +44,23 @@ pub(super) fn resurrect(node: &Node<'_>) -> Option<Located<ResurrectRule>> {
     Some(located(&node, rule))
 }
 
-fn backup(node: &Node<'_>) -> Option<(Duration, bool)> {
+/// Its period, and how old a copy may be that the container itself goes on from.
+fn backup(node: &Node<'_>) -> Option<(Duration, Option<Duration>)> {
     let period = positive_duration(&node.text());
     let persist = node.attribute("persist").map(|value| value.boolean());
+    let max_age = node.attribute("max_age");
     node.finish();
-    Some((period?, persist.unwrap_or(Some(false))?))
+    let persist = persist.unwrap_or(Some(false))?;
+    if let Some(max_age) = max_age.as_ref().filter(|_| !persist) {
+        max_age.error(
+            "a greatest age of copies that do not outlive the container",
+            Some("write persist=\"true\" as well, or remove max_age".into()),
+        );
+        return None;
+    }
+    let max_age = max_age.map(|value| positive_duration(&value));
+    let max_age = max_age.unwrap_or(Some(DEFAULT_PERSISTED_MAX_AGE))?;
+    Some((period?, persist.then_some(max_age)))
 }
 
 /// `fault`, and the secondaries in it.
