@@ -11,6 +11,10 @@ const LOOK: Duration = Duration::from_millis(2);
 /// The first look is after this part of the limit: what the thread has run before it is not known.
 const FIRST_LOOK: u32 = 8;
 
+/// A host breaks a callback off within a fraction of this, in the component's own code; what is
+/// elsewhere, or does not hear, is ended with its host.
+const GRACE: Duration = Duration::from_millis(10);
+
 /// A wait is no shorter: the system cannot tell the moments apart.
 const SHORTEST: Duration = Duration::from_micros(50);
 
@@ -26,6 +30,8 @@ pub(super) struct Patience {
     /// Time that does not count.
     excused: Duration,
     account: Account,
+    /// Since when the host is breaking the callback off.
+    grace: Option<Instant>,
 }
 
 /// What of the time that has passed was spent by the thread.
@@ -46,6 +52,7 @@ impl Patience {
             paused: None,
             excused: Duration::ZERO,
             account: Account::default(),
+            grace: None,
         }
     }
 
@@ -55,6 +62,9 @@ impl Patience {
         let Some(limit) = self.limit(hurry) else {
             return LOOK;
         };
+        if self.grace.is_some() {
+            return LOOK;
+        }
         let left = match self.account.last {
             None => limit / FIRST_LOOK,
             Some(_) => limit.saturating_sub(self.account.spent),
@@ -80,13 +90,23 @@ impl Patience {
             .is_some_and(|limit| self.passed() >= limit)
     }
 
-    /// Looks at the host; the limit that was exceeded, if one was.
-    pub(super) fn exceeded(&mut self, hurry: Duration) -> Option<Duration> {
+    /// Looks at the host; whether the callback is to be broken off now.
+    pub(super) fn exceeded(&mut self, hurry: Duration) -> bool {
         let passed = self.passed();
         let (ran, is_ready) = observe(self.thread);
         self.account.look(passed, ran, is_ready);
-        let limit = self.limit(hurry)?;
-        (self.account.spent >= limit).then_some(limit)
+        let limit = self.limit(hurry);
+        self.grace.is_none() && limit.is_some_and(|limit| self.account.spent >= limit)
+    }
+
+    /// The host breaks the callback off from now on.
+    pub(super) fn give_grace(&mut self) {
+        self.grace = Some(Instant::now());
+    }
+
+    /// Whether the host has not managed that.
+    pub(super) fn has_given_up(&self) -> bool {
+        self.grace.is_some_and(|since| since.elapsed() >= GRACE)
     }
 
     fn limit(&self, hurry: Duration) -> Option<Duration> {
