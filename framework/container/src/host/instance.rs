@@ -47,6 +47,8 @@ pub struct Hosted {
     /// The host's thread that runs the instance.
     thread: i32,
     inputs: Vec<Input>,
+    /// Of the last call.
+    number: u32,
     injection: Option<Misbehaviour>,
     forgets_allocations: bool,
     allocated_bytes: u64,
@@ -119,6 +121,7 @@ impl Hosted {
             remains: None,
             devices,
             thread,
+            number: 0,
             injection: None,
             forgets_allocations: false,
             allocated_bytes: 0,
@@ -159,11 +162,14 @@ impl Hosted {
         if is_cycle {
             answer::offer(&self.channel, &self.layout, &mut self.inputs, services);
         }
+        self.number = self.number.wrapping_add(1).max(1);
         let call = ToHost::Call(Call {
             callback: CallbackWords::of(&callback),
             injection: self.injection.take(),
             forgets_allocations: std::mem::take(&mut self.forgets_allocations),
             now_ns: services.answer(&crate::guard::Request::Now),
+            limit_ns: crate::clock::nanoseconds(limit.duration()),
+            number: self.number,
         });
         self.channel.say(&call.words());
         let watched = loss.watch().enter(CallLimit::NONE);
@@ -250,8 +256,8 @@ impl Hosted {
                         let status = answer::answer(memory, question, inputs, devices, services);
                         patience.resume();
                         self.channel.say(&ToHost::Answer(status).words());
-                        if !patience.is_used_up(hurry) || patience.exceeded(hurry).is_none() {
-                            self.channel.hand_to_host();
+                        self.channel.hand_to_host();
+                        if !patience.is_used_up(hurry) {
                             continue;
                         }
                     }
@@ -263,9 +269,13 @@ impl Hosted {
                 },
                 Waited::Late => {}
             }
-            if let Some(limit) = patience.exceeded(hurry) {
+            if patience.has_given_up() {
                 self.kill();
-                return Ending::Trapped(hang(limit));
+                return Ending::Trapped(hang(limit.duration()));
+            }
+            if patience.exceeded(hurry) {
+                self.channel.condemn(self.number);
+                patience.give_grace();
             }
         }
     }
