@@ -12,6 +12,7 @@ use commands::bench::{self, BenchArguments};
 use commands::check::{self, CheckArguments};
 use commands::fault::{self, FaultArguments};
 use commands::run::{self, RunArguments};
+use commands::world::{self, WorldArguments};
 
 /// Fault tolerance for component-based robots, declared in XML.
 #[derive(Debug, Parser)]
@@ -31,6 +32,9 @@ enum Command {
     Fault(FaultArguments),
     /// Measure how good Steadfast is at what it does.
     Bench(BenchArguments),
+    /// Be the simulated world of a supervised run.
+    #[command(hide = true)]
+    World(WorldArguments),
     /// Load a library and say by the exit code whether that works.
     #[command(hide = true)]
     ProbeLibrary {
@@ -45,6 +49,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Fault(arguments) => fault::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::World(arguments) => world::run(&arguments),
         Command::ProbeLibrary { path } => container::library::probe_main(&path),
     }
 }

@@ -19,7 +19,7 @@ use system_model::specification::ApplicationSpecification;
 use crate::assembly::{Assembly, assemble_together};
 use crate::component::{ComponentCell, Environment};
 use crate::control::RunningSystem;
-use crate::event_log::{Event, EventLog, EventWriter};
+use crate::event_log::{Event, EventWriter};
 use crate::lane::{Crew, Lane, remaining};
 use crate::library::PortDescription;
 use crate::status::ComponentStatus;
@@ -78,15 +78,14 @@ impl System {
         mut options: RunOptions,
     ) -> Result<Self, StartError> {
         let real = options.clock == ClockKind::Real;
-        let world = simulation.map(|simulation| Arc::new(World::new(simulation, real)));
-        let (events, writer) =
-            EventLog::open(options.events.as_deref(), !real, options.echo.take()).map_err(
-                |error| StartError::Output {
-                    path: options.events.clone().unwrap_or_default(),
-                    error,
-                },
-            )?;
-        let environment = Arc::new(options.clock.environment(events, world.clone()));
+        let supervised = options.supervised.clone();
+        let outside = supervised.as_ref().and_then(|it| it.world().cloned());
+        let world = outside.or_else(|| simulation.map(|it| Arc::new(World::new(it, real))));
+        let (events, writer) = options.open_events()?;
+        let run_time = supervised.as_ref().map(|it| it.run_time());
+        let environment =
+            (options.clock).environment(events, world.clone(), run_time.unwrap_or_default());
+        let environment = Arc::new(environment);
         let applications = Applications::new(applications);
         let specification = &applications.specification;
         let assembly = assemble_together(
@@ -134,6 +133,9 @@ impl System {
         if let Err(error) = system.launch(executors, wanted) {
             let _nothing_to_sum_up = system.stop("start_refused");
             return Err(error);
+        }
+        if let Some(restarted) = supervised.and_then(|it| it.runs()) {
+            system.record(restarted);
         }
         Ok(system)
     }
@@ -234,12 +236,14 @@ impl System {
     }
 
     fn notice(&self, message: &str) {
-        self.environment.events.record(
-            self.environment.clock.now_ns(),
-            Event::Notice {
-                message: message.to_owned(),
-            },
-        );
+        self.record(Event::Notice {
+            message: message.to_owned(),
+        });
+    }
+
+    fn record(&self, event: Event) {
+        let now_ns = self.environment.clock.now_ns();
+        self.environment.events.record(now_ns, event);
     }
 
     fn is_over(&self) -> bool {
@@ -285,6 +289,7 @@ impl System {
                 .iter()
                 .map(|status| (status.name.clone(), ComponentSummary::of(status)))
                 .collect(),
+            restarts: (self.options.supervised.as_ref()).map_or(0, |it| it.restarts()),
             robot: self.world.as_ref().map(|world| world.summary()),
         }
     }

@@ -13,6 +13,7 @@ use super::Supervisor;
 use crate::clock::nanoseconds;
 use crate::guard::loss::LostThread;
 use crate::lane::{Crew, Lane, Work};
+use crate::outer_supervision::Supervised;
 
 /// The longest sleep of the thread that looks after time, so that it notices its end.
 const LONGEST_SLEEP: Duration = Duration::from_millis(100);
@@ -30,7 +31,7 @@ pub struct ManagerThreads {
 }
 
 impl ManagerThreads {
-    /// Starts all three.
+    /// Starts all three. A parent that supervises hears from the first.
     ///
     /// # Errors
     /// If the system refuses a thread.
@@ -39,11 +40,12 @@ impl ManagerThreads {
         supervisor: &Arc<Supervisor>,
         crew: &Arc<Crew>,
         wanted: Receiver<usize>,
+        supervised: Option<Arc<Supervised>>,
     ) -> io::Result<()> {
         let (stopping, clocked) = (Arc::clone(&self.stopping), Arc::clone(supervisor));
         let thread = std::thread::Builder::new()
             .name("fault-manager".to_owned())
-            .spawn(move || look_after_time(&clocked, &stopping))?;
+            .spawn(move || look_after_time(&clocked, supervised.as_deref(), &stopping))?;
         self.clock = Some(thread);
         let (stopping, reader) = (Arc::clone(&self.stopping), Arc::clone(supervisor));
         let thread = std::thread::Builder::new()
@@ -78,11 +80,20 @@ impl ManagerThreads {
     }
 }
 
-fn look_after_time(supervisor: &Supervisor, stopping: &AtomicBool) {
+/// Each look goes through all that the fault manager is made of, so that a parent hears of a look only
+/// while none of it stands still.
+fn look_after_time(
+    supervisor: &Supervisor,
+    supervised: Option<&Supervised>,
+    stopping: &AtomicBool,
+) {
     while !stopping.load(Ordering::Acquire) {
         supervisor.tick();
         let now_ns = nanoseconds(supervisor.environment().clock.now());
         let due_ns = supervisor.due_ns().unwrap_or(u64::MAX);
+        if let Some(supervised) = supervised {
+            supervised.beat();
+        }
         let sleep = Duration::from_nanos(due_ns.saturating_sub(now_ns));
         supervisor.sleep(sleep.min(LONGEST_SLEEP));
     }

@@ -6,12 +6,14 @@ use std::time::Duration;
 
 use crossbeam::channel::Sender;
 
+use super::StartError;
 use crate::assembly::LibraryOptions;
 use crate::clock::Clock;
 use crate::component::Environment;
 use crate::device::Devices;
-use crate::event_log::{Event, EventLog};
+use crate::event_log::{Event, EventLog, EventWriter};
 use crate::injection::Injections;
+use crate::outer_supervision::Supervised;
 use crate::schedule::BusyTime;
 use crate::supervision::{Observations, Scenes};
 use crate::world::World;
@@ -35,10 +37,16 @@ impl ClockKind {
     }
 
     /// What components share that run by this clock.
-    pub(super) fn environment(self, events: EventLog, world: Option<Arc<World>>) -> Environment {
+    /// `run_time`: how long the run has lasted when this container comes into it.
+    pub(super) fn environment(
+        self,
+        events: EventLog,
+        world: Option<Arc<World>>,
+        run_time: Duration,
+    ) -> Environment {
         Environment {
             clock: match self {
-                ClockKind::Real => Clock::real(),
+                ClockKind::Real => Clock::real_since(run_time),
                 ClockKind::Simulated => Clock::simulated(),
             },
             events,
@@ -67,4 +75,22 @@ pub struct RunOptions {
     pub echo: Option<Sender<(u64, Event)>>,
     /// How libraries are found and loaded.
     pub libraries: LibraryOptions,
+    /// The parent that supervises this container, if one does.
+    pub supervised: Option<Arc<Supervised>>,
+}
+
+impl RunOptions {
+    /// Opens the event file: a fresh one, or that of the container before.
+    pub(super) fn open_events(&mut self) -> Result<(EventLog, EventWriter), StartError> {
+        let (path, echo) = (self.events.as_deref(), self.echo.take());
+        let waits = self.clock == ClockKind::Simulated;
+        let opened = match self.supervised {
+            Some(_) => EventLog::resume(path, waits, echo),
+            None => EventLog::open(path, waits, echo),
+        };
+        opened.map_err(|error| StartError::Output {
+            path: self.events.clone().unwrap_or_default(),
+            error,
+        })
+    }
 }

@@ -61,10 +61,34 @@ pub(super) fn describe(event: &Event) -> Option<String> {
         } if *level != "debug" => format!("{component}: {level}: {message}"),
         Event::Log { .. } | Event::RunStopped { .. } => return None,
         Event::Notice { message } => format!("notice: {message}"),
+        Event::ContainerRestarted { .. } | Event::ContainerGivenUp { .. } => {
+            return container_died(event);
+        }
         Event::TargetReached { time_s } => {
             format!("the robot has reached its target ({time_s:.2} s)")
         }
     })
+}
+
+/// What became of the container before this one.
+fn container_died(event: &Event) -> Option<String> {
+    match event {
+        Event::ContainerRestarted {
+            restart,
+            seen,
+            done,
+            without_container_us,
+            ..
+        } => {
+            let without = std::time::Duration::from_micros(*without_container_us);
+            let without_s = without.as_secs_f64();
+            Some(format!(
+                "RESTART {restart} of the container: {seen}: {done}; {without_s:.3} s without one"
+            ))
+        }
+        Event::ContainerGivenUp { seen, .. } => Some(format!("the container is given up: {seen}")),
+        _ => None,
+    }
 }
 
 /// A verdict in one line: who, what, why so, and what is being done.

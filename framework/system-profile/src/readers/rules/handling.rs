@@ -166,7 +166,10 @@ pub(super) fn actuator(node: &Node<'_>) -> (Option<Located<ActuatorRule>>, Vec<C
     let commands = node.children("command");
     let commands = commands.iter().filter_map(command).collect();
     node.finish();
-    let rule = category.map(|stop_category| ActuatorRule { stop_category });
+    let rule = category.map(|stop_category| ActuatorRule {
+        stop_category,
+        safe_states: Vec::new(),
+    });
     (rule.map(|rule| located(&node, rule)), commands)
 }
 
