@@ -98,7 +98,8 @@ impl System {
         .map_err(StartError::Assembly)?;
         let names = specification.components.iter().map(|it| it.name.clone());
         environment.injections.prepare(names, options.seed);
-        inject(&applications.injections, &assembly, &environment).map_err(StartError::Assembly)?;
+        let injections = options.injections(&applications.injections);
+        inject(&injections, &assembly, &environment).map_err(StartError::Assembly)?;
         let (supervisor, wanted) =
             supervise(&applications, &assembly, &environment).map_err(StartError::Assembly)?;
         let Assembly {

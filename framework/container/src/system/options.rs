@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crossbeam::channel::Sender;
+use system_model::injection::Injection;
 
 use super::StartError;
 use crate::assembly::LibraryOptions;
@@ -12,7 +13,7 @@ use crate::clock::Clock;
 use crate::component::Environment;
 use crate::device::Devices;
 use crate::event_log::{Event, EventLog, EventWriter};
-use crate::injection::Injections;
+use crate::injection::{Injections, still_to_come};
 use crate::outer_supervision::Supervised;
 use crate::schedule::BusyTime;
 use crate::supervision::{Observations, Scenes};
@@ -80,6 +81,15 @@ pub struct RunOptions {
 }
 
 impl RunOptions {
+    /// What of a run's injections this container makes: one that goes on where another has died does
+    /// not begin anew.
+    pub(super) fn injections(&self, all: &[Injection]) -> Vec<Injection> {
+        let before = self.supervised.as_ref().filter(|it| it.restarts() > 0);
+        let run_time = before.map_or(Duration::ZERO, |it| it.run_time());
+        let to_come = |injection| still_to_come(injection, run_time);
+        all.iter().filter_map(to_come).collect()
+    }
+
     /// Opens the event file: a fresh one, or that of the container before.
     pub(super) fn open_events(&mut self) -> Result<(EventLog, EventWriter), StartError> {
         let (path, echo) = (self.events.as_deref(), self.echo.take());

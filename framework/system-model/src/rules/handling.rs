@@ -121,6 +121,9 @@ pub struct ActuatorRule {
     pub safe_states: Vec<SafeStateRule>,
 }
 
+/// A command to hardware is a frame of a serial line or two; more is no safe state but a program.
+pub const MAX_SAFE_STATE_BYTES: usize = 256;
+
 /// `safe_state` of an actuator: bytes that make its hardware safe, for hardware that does not stop by
 /// itself when commands fail to come.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -20,8 +20,8 @@ pub use diagnosis::{
 };
 pub use handling::{
     ActuatorRule, DEFAULT_FAULT_WINDOW, DEFAULT_RETRY_MAX, FaultRule, IsolationRule, IsolationTier,
-    MAX_RETRY_MAX, Preload, RecoveryRule, ResurrectRule, SafeStateRule, SafeValue, Secondary,
-    StopCategory, declared_replacement_cost, declared_reset_cost,
+    MAX_RETRY_MAX, MAX_SAFE_STATE_BYTES, Preload, RecoveryRule, ResurrectRule, SafeStateRule,
+    SafeValue, Secondary, StopCategory, declared_replacement_cost, declared_reset_cost,
 };
 pub use monitor::{
     DecisionRule, MonitorRule, ProcessModelRule, RulePort, VotingMethod, VotingRule, VotingSource,

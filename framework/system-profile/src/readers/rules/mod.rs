@@ -8,6 +8,7 @@ mod diagnosis;
 mod handling;
 pub(super) mod measure;
 mod monitor;
+mod safe_state;
 
 use system_model::profile::Located;
 use system_model::rules::{ComponentRules, HeartbeatRule, PortChecks};
