@@ -1,6 +1,7 @@
 //! Lines of JSON between two processes, each with a descriptor along if need be: what the parent of
 //! a supervised container, the container and the process of the simulated world say to each other.
 
+use std::collections::VecDeque;
 use std::io::{self, ErrorKind, IoSlice, IoSliceMut};
 use std::mem::MaybeUninit;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
@@ -11,8 +12,8 @@ use rustix::net::{
     RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, SendAncillaryBuffer,
     SendAncillaryMessage, SendFlags, recvmsg, sendmsg,
 };
-use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 
 /// A longer line is a mistake: the picture of a drive of half an hour has 1 MB.
 const MAX_LINE_BYTES: usize = 16 << 20;
@@ -26,8 +27,16 @@ pub struct DescriptorLine {
     stream: UnixStream,
     /// What has come of the next line.
     unread: Vec<u8>,
-    /// The descriptor that came with it.
-    descriptor: Option<OwnedFd>,
+    /// Descriptors that have come: the kernel may hand one over with the line before its own.
+    descriptors: VecDeque<OwnedFd>,
+}
+
+/// What stands in a line.
+#[derive(Serialize, Deserialize)]
+struct Content<T> {
+    /// Whether a descriptor comes along.
+    descriptor: bool,
+    message: T,
 }
 
 impl DescriptorLine {
@@ -42,7 +51,7 @@ impl DescriptorLine {
         Ok(Self {
             stream,
             unread: Vec::new(),
-            descriptor: None,
+            descriptors: VecDeque::new(),
         })
     }
 
@@ -55,7 +64,10 @@ impl DescriptorLine {
         message: &impl Serialize,
         descriptor: Option<BorrowedFd<'_>>,
     ) -> io::Result<()> {
-        let mut bytes = serde_json::to_vec(message)?;
+        let mut bytes = serde_json::to_vec(&Content {
+            descriptor: descriptor.is_some(),
+            message,
+        })?;
         bytes.push(b'\n');
         let descriptors: Vec<BorrowedFd<'_>> = descriptor.into_iter().collect();
         let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];
@@ -84,9 +96,13 @@ impl DescriptorLine {
     pub fn receive<T: DeserializeOwned>(&mut self) -> io::Result<Option<(T, Option<OwnedFd>)>> {
         loop {
             if let Some(end) = self.unread.iter().position(|byte| *byte == b'\n') {
-                let message = serde_json::from_slice(&self.unread[..end])?;
+                let content: Content<T> = serde_json::from_slice(&self.unread[..end])?;
                 self.unread.drain(..=end);
-                return Ok(Some((message, self.descriptor.take())));
+                let descriptor = match content.descriptor {
+                    true => Some(self.descriptors.pop_front().ok_or(ErrorKind::InvalidData)?),
+                    false => None,
+                };
+                return Ok(Some((content.message, descriptor)));
             }
             if self.unread.len() > MAX_LINE_BYTES {
                 return Err(io::Error::new(ErrorKind::InvalidData, "a line without end"));
@@ -115,8 +131,8 @@ impl DescriptorLine {
             }
         };
         for message in along.drain() {
-            if let RecvAncillaryMessage::ScmRights(mut descriptors) = message {
-                self.descriptor = descriptors.next();
+            if let RecvAncillaryMessage::ScmRights(descriptors) = message {
+                self.descriptors.extend(descriptors);
             }
         }
         self.unread.extend_from_slice(&chunk[..received.bytes]);

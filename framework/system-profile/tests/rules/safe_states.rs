@@ -58,7 +58,7 @@ fn what_cannot_be_written_is_refused() {
         ),
         (
             "device='/dev/ttyS1' bytes='' period='50'",
-            "`` are no bytes",
+            "<safe_state> has no bytes",
         ),
         (
             "device='/dev/ttyS1' bytes='0x02' period='50'",

@@ -44,7 +44,7 @@ fn bytes(value: &Value<'_>) -> Option<Vec<u8>> {
         _ => None,
     };
     let bytes: Option<Vec<u8>> = value.as_str().split_whitespace().map(byte).collect();
-    let bytes = bytes.filter(|bytes| (1..=MAX_SAFE_STATE_BYTES).contains(&bytes.len()));
+    let bytes = bytes.filter(|bytes| bytes.len() <= MAX_SAFE_STATE_BYTES);
     if bytes.is_none() {
         value.error(
             format!("`{}` are no bytes", quoted(value.as_str())),
