@@ -87,7 +87,7 @@ fn an_actuator_is_told_to_be_safe_while_no_container_runs() {
     let run = start(&application, &[]);
     wait_until_running(&application, 1);
     let written = || std::fs::read(&device).expect("it is there");
-    assert_eq!(written(), [], "the container runs");
+    assert_eq!(written(), b"", "the container runs");
     let container = Supervised::by(&run).container(None);
     Supervised::signal(container, Signal::KILL);
     wait_until_running(&application, 2);
