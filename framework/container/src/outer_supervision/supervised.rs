@@ -13,8 +13,8 @@ use crate::descriptor_line::DescriptorLine;
 use crate::event_log::Event;
 use crate::world::{RemoteWorld, World};
 
-/// Beats are at least this far apart: twenty of them in the shortest time after which a parent
-/// would otherwise take the container for hung.
+/// Beats are at least this far apart: half of the time between two looks of a fault manager that has
+/// nothing to do. One that has much to do looks more often than any parent wants to know.
 const BEAT_PERIOD: Duration = Duration::from_millis(50);
 
 /// What a container has of the parent that supervises it.
@@ -55,6 +55,22 @@ impl Supervised {
             running: AtomicBool::new(false),
             last_beat_ns: AtomicU64::new(0),
         })
+    }
+
+    /// A container that runs, over this line.
+    #[cfg(test)]
+    pub(crate) fn running_over(line: UnixStream) -> Self {
+        Self {
+            line,
+            world: None,
+            welcome: Welcome {
+                first_start_ns: 0,
+                restarts: 0,
+                death: None,
+            },
+            running: AtomicBool::new(true),
+            last_beat_ns: AtomicU64::new(0),
+        }
     }
 
     /// The simulated world, which was there before this container.
