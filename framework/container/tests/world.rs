@@ -100,6 +100,19 @@ fn a_robot_whose_container_died_stops_and_stays_where_it_is() {
     parent.end();
 }
 
+/// What the README tells the parent to write to a motion board is what the board takes for a stop.
+#[test]
+fn the_safe_state_of_the_readme_is_a_stop() {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let readme = std::fs::read_to_string(root.join("../../README.md")).expect("the README");
+    let bytes = readme.split_once("<safe_state device=\"/dev/ttyUSB0\" bytes=\"");
+    let bytes = bytes.and_then(|(_, rest)| rest.split_once('"'));
+    let (bytes, _) = bytes.expect("the README has a safe state");
+    let stop = encode(&Message::Command(MotionCommand::stop()));
+    let written: Vec<String> = stop.iter().map(|byte| format!("{byte:02x}")).collect();
+    assert_eq!(bytes, written.join(" "));
+}
+
 #[test]
 fn a_container_sees_the_world_as_if_it_were_its_own() {
     let mut parent = Parent::new();

@@ -115,6 +115,11 @@ impl SafeState {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Read as _;
+
+    use nix::fcntl::OFlag;
+    use nix::pty::{grantpt, posix_openpt, ptsname_r, unlockpt};
+
     use super::*;
 
     fn at(milliseconds: u64) -> Duration {
@@ -158,6 +163,26 @@ mod tests {
         assert_eq!(written, [0, 1, 1, 1, 2, 3, 3, 3, 3]);
         let bytes = std::fs::read(file.path()).unwrap();
         assert_eq!(bytes, [2, 16].repeat(3));
+    }
+
+    #[test]
+    fn a_terminal_that_nobody_reads_holds_nobody_up() {
+        let flags = OFlag::O_RDWR | OFlag::O_NOCTTY | OFlag::O_NONBLOCK | OFlag::O_CLOEXEC;
+        let mut master = posix_openpt(flags).unwrap();
+        grantpt(&master).unwrap();
+        unlockpt(&master).unwrap();
+        let device = ptsname_r(&master).unwrap();
+        let mut states = states(device.as_ref());
+        states.hold(at(0));
+        // More than a terminal holds for its reader.
+        let writes = 100_000;
+        for write in 0..writes {
+            states.write(at(50 * write));
+        }
+        assert!(states.complaints().next().is_some(), "it took all of that");
+        let mut received = [0; 64];
+        let count = master.read(&mut received).unwrap();
+        assert_eq!(received[..count], [2, 16].repeat(count / 2));
     }
 
     #[test]
