@@ -129,6 +129,32 @@ fn when_the_restarts_are_used_up_it_gives_up() {
     assert!(application.operator().sockets().is_empty());
 }
 
+/// At any moment: while it is brought up, while it runs.
+#[test]
+fn two_hundred_kills_leave_nothing_behind() {
+    let application = application();
+    let run = start(&application, &["--restarts", "1000"]);
+    let processes = Supervised::by(&run);
+    wait_until_running(&application, 1);
+    let mut container = processes.container(None);
+    let open = processes.open_in_parent();
+    for kill in 0..200_u64 {
+        // From 0 to 97 ms, in no order; bringing up takes about as long.
+        std::thread::sleep(Duration::from_millis(kill * 37 % 98));
+        Supervised::signal(container, Signal::KILL);
+        container = processes.container(Some(container));
+    }
+    let operator = application.operator();
+    operator.socket();
+    assert_eq!(operator.sockets().len(), 1);
+    assert_eq!(processes.open_in_parent(), open);
+    let outcome = application.interrupt(run).ended_well();
+    assert_eq!(outcome.summary()["restarts"], 200);
+    assert!(operator.sockets().is_empty());
+    let profile = application.profile().display().to_string();
+    assert_eq!(Supervised::called_with(&profile), []);
+}
+
 #[test]
 fn a_refused_start_is_not_repeated() {
     let application = Application::new().with(&Member::new("absent", "no_such_library"));

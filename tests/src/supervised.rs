@@ -53,6 +53,19 @@ impl Supervised {
         found.expect("it came")
     }
 
+    /// How many files and sockets the parent has open.
+    pub fn open_in_parent(&self) -> usize {
+        let descriptors = std::fs::read_dir(folder(self.parent).join("fd"));
+        descriptors.into_iter().flatten().count()
+    }
+
+    /// Processes that were called with this argument, whoever has started them.
+    pub fn called_with(argument: &str) -> Vec<Pid> {
+        let mut found = processes();
+        found.retain(|process| has_argument(*process, argument));
+        found
+    }
+
     /// Sends a signal to a process of the run.
     ///
     /// # Panics
@@ -78,15 +91,20 @@ fn state(process: Pid) -> Option<char> {
 
 /// The living children of a process.
 fn children(parent: Pid) -> Vec<Pid> {
-    let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
-    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
-    let processes = names.filter_map(|name| Pid::from_raw(name.parse().ok()?));
     let is_child = |process: &Pid| {
         let fields = fields(*process).unwrap_or_default();
         let of = fields.get(1).and_then(|parent| parent.parse().ok());
         of == Some(parent.as_raw_nonzero().get()) && fields[0] != "Z"
     };
-    processes.filter(is_child).collect()
+    processes().into_iter().filter(is_child).collect()
+}
+
+fn processes() -> Vec<Pid> {
+    let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    names
+        .filter_map(|name| Pid::from_raw(name.parse().ok()?))
+        .collect()
 }
 
 /// What stands behind the name of a process in `/proc/PROCESS/stat`: state, parent, group.
