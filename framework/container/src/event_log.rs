@@ -15,6 +15,8 @@ use serde::Serialize;
 use system_model::fault::Fault;
 use unfinished::open_at_end;
 
+use crate::outer_supervision::ContainerRestart;
+
 /// Events that may wait for the writer: more than a robot of a hundred components makes in a
 /// second when all of them fail.
 const QUEUE: usize = 8192;
@@ -111,24 +113,7 @@ pub enum Event {
         message: String,
     },
     /// The container has died and was restarted by its parent; recorded once it runs again.
-    ContainerRestarted {
-        /// How many restarts there have been in this run.
-        restart: u32,
-        /// What was seen.
-        seen: String,
-        /// Why it was judged so.
-        judged: String,
-        /// What was done.
-        done: String,
-        /// From the last sign of life until the death was seen, in microseconds.
-        detection_us: u64,
-        /// From there until the next container was started.
-        decision_us: u64,
-        /// From there until it ran.
-        handling_us: u64,
-        /// How long no container ran, as far as is known: the sum of the last two.
-        without_container_us: u64,
-    },
+    ContainerRestarted(Box<ContainerRestart>),
     /// The container has died once too often: its parent will not restart it.
     ContainerGivenUp {
         /// How many restarts there have been in this run.

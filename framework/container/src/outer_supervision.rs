@@ -28,7 +28,7 @@ pub use bond::{die_with_parent, take_line};
 pub use budget::{DEFAULT_RESTARTS, RESTART_WINDOW};
 pub use liveness::{DEFAULT_BEAT_LIMIT, LEAST_BEAT_LIMIT};
 pub use parent::{GIVEN_UP, Plan, PlannedWorld, SuperviseError, supervise};
-pub use supervised::Supervised;
+pub use supervised::{ContainerRestart, Supervised};
 
 /// The machine's monotonic clock, which all processes share. Zero if there is none, which no Linux
 /// lacks.

@@ -6,6 +6,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
+use serde::Serialize;
+
 use super::messages::{Death, LINE_LIMIT, Sign, Welcome};
 use super::{die_with_parent, monotonic, take_line};
 use crate::clock::nanoseconds;
@@ -94,7 +96,8 @@ impl Supervised {
         self.running.store(true, Ordering::Release);
         self.beat();
         let death = self.welcome.death.as_ref()?;
-        Some(restarted(death, self.welcome.restarts, monotonic()))
+        let restart = ContainerRestart::new(death, self.welcome.restarts, monotonic());
+        Some(Event::ContainerRestarted(Box::new(restart)))
     }
 
     /// The fault manager looks after things. To be called from where it does, and only there.
@@ -120,19 +123,42 @@ impl Supervised {
     }
 }
 
-/// The record of a death and what followed, when the successor runs.
-fn restarted(death: &Death, restart: u32, now: Duration) -> Event {
-    let microseconds = |from: u64, to: u64| to.saturating_sub(from) / 1000;
-    let now_ns = nanoseconds(now);
-    Event::ContainerRestarted {
-        restart,
-        seen: death.seen.clone(),
-        judged: death.judged.clone(),
-        done: death.done.clone(),
-        detection_us: microseconds(death.heard_ns, death.seen_ns),
-        decision_us: microseconds(death.seen_ns, death.restarted_ns),
-        handling_us: microseconds(death.restarted_ns, now_ns),
-        without_container_us: microseconds(death.seen_ns, now_ns),
+/// What is on record of a container's death and what followed. Times are in microseconds.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct ContainerRestart {
+    /// How many restarts there have been in this run.
+    pub restart: u32,
+    /// What was seen.
+    pub seen: String,
+    /// Why it was judged so.
+    pub judged: String,
+    /// What was done.
+    pub done: String,
+    /// From the last sign of life until the death was seen.
+    pub detection_us: u64,
+    /// From there until the next container was started.
+    pub decision_us: u64,
+    /// From there until it ran.
+    pub handling_us: u64,
+    /// How long no container ran, as far as is known: the sum of the last two.
+    pub without_container_us: u64,
+}
+
+impl ContainerRestart {
+    /// The record when the successor runs, `now`.
+    fn new(death: &Death, restart: u32, now: Duration) -> Self {
+        let microseconds = |from: u64, to: u64| to.saturating_sub(from) / 1000;
+        let now_ns = nanoseconds(now);
+        Self {
+            restart,
+            seen: death.seen.clone(),
+            judged: death.judged.clone(),
+            done: death.done.clone(),
+            detection_us: microseconds(death.heard_ns, death.seen_ns),
+            decision_us: microseconds(death.seen_ns, death.restarted_ns),
+            handling_us: microseconds(death.restarted_ns, now_ns),
+            without_container_us: microseconds(death.seen_ns, now_ns),
+        }
     }
 }
 
@@ -150,7 +176,8 @@ mod tests {
             seen_ns: 3_000_000,
             restarted_ns: 7_000_000,
         };
-        let event = restarted(&death, 1, Duration::from_nanos(15_000_000));
+        let restart = ContainerRestart::new(&death, 1, Duration::from_nanos(15_000_000));
+        let event = Event::ContainerRestarted(Box::new(restart));
         let json = serde_json::to_value(&event).unwrap();
         for (phase, expected_us) in [
             ("detection_us", 2_000),

@@ -1,6 +1,7 @@
 //! Events in words, for a person who watches.
 
 use container::event_log::Event;
+use container::outer_supervision::ContainerRestart;
 use fault_manager::{Cause, Verdict};
 
 /// The event in words; `None` for those that would only be noise.
@@ -61,9 +62,8 @@ pub(super) fn describe(event: &Event) -> Option<String> {
         } if *level != "debug" => format!("{component}: {level}: {message}"),
         Event::Log { .. } | Event::RunStopped { .. } => return None,
         Event::Notice { message } => format!("notice: {message}"),
-        Event::ContainerRestarted { .. } | Event::ContainerGivenUp { .. } => {
-            return container_died(event);
-        }
+        Event::ContainerRestarted(restart) => restarted(restart),
+        Event::ContainerGivenUp { seen, .. } => format!("the container is given up: {seen}"),
         Event::TargetReached { time_s } => {
             format!("the robot has reached its target ({time_s:.2} s)")
         }
@@ -71,24 +71,15 @@ pub(super) fn describe(event: &Event) -> Option<String> {
 }
 
 /// What became of the container before this one.
-fn container_died(event: &Event) -> Option<String> {
-    match event {
-        Event::ContainerRestarted {
-            restart,
-            seen,
-            done,
-            without_container_us,
-            ..
-        } => {
-            let without = std::time::Duration::from_micros(*without_container_us);
-            let without_s = without.as_secs_f64();
-            Some(format!(
-                "RESTART {restart} of the container: {seen}: {done}; {without_s:.3} s without one"
-            ))
-        }
-        Event::ContainerGivenUp { seen, .. } => Some(format!("the container is given up: {seen}")),
-        _ => None,
-    }
+fn restarted(restart: &ContainerRestart) -> String {
+    let without = std::time::Duration::from_micros(restart.without_container_us);
+    format!(
+        "RESTART {} of the container: {}: {}; {:.3} s without one",
+        restart.restart,
+        restart.seen,
+        restart.done,
+        without.as_secs_f64()
+    )
 }
 
 /// A verdict in one line: who, what, why so, and what is being done.
