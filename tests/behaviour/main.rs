@@ -26,5 +26,6 @@ mod scenarios;
 mod services;
 mod several_applications;
 mod stopping;
+mod supervised;
 mod tidy;
 mod two_cameras;

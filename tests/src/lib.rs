@@ -9,6 +9,7 @@ mod build;
 mod member;
 mod operator;
 mod outcome;
+mod supervised;
 mod watchdog;
 
 pub use application::Application;
@@ -17,4 +18,5 @@ pub use build::{artifacts, c_component};
 pub use member::Member;
 pub use operator::Operator;
 pub use outcome::Outcome;
+pub use supervised::Supervised;
 pub use watchdog::{Finished, Watched, repository, until};

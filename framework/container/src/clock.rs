@@ -15,7 +15,13 @@ pub enum Clock {
 impl Clock {
     /// A real clock that starts now.
     pub fn real() -> Self {
-        Self::Real(Instant::now())
+        Self::real_since(Duration::ZERO)
+    }
+
+    /// A real clock that started so long ago.
+    pub fn real_since(ago: Duration) -> Self {
+        let now = Instant::now();
+        Self::Real(now.checked_sub(ago).unwrap_or(now))
     }
 
     /// A simulated clock at zero.

@@ -1,5 +1,7 @@
 //! The event log: everything that happened, one JSON object a line, written by a thread of its own.
 
+mod unfinished;
+
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -11,6 +13,9 @@ use crossbeam::channel::{Receiver, RecvTimeoutError, Sender, TrySendError, bound
 use fault_manager::Verdict;
 use serde::Serialize;
 use system_model::fault::Fault;
+use unfinished::open_at_end;
+
+use crate::outer_supervision::ContainerRestart;
 
 /// Events that may wait for the writer: more than a robot of a hundred components makes in a
 /// second when all of them fail.
@@ -118,6 +123,17 @@ pub enum Event {
         /// What it is.
         message: String,
     },
+    /// The container has died and was restarted by its parent; recorded once it runs again.
+    ContainerRestarted(Box<ContainerRestart>),
+    /// The container has died once too often: its parent will not restart it.
+    ContainerGivenUp {
+        /// How many restarts there have been in this run.
+        restarts: u32,
+        /// What was seen last.
+        seen: String,
+        /// Why it was judged so.
+        judged: String,
+    },
     /// The robot has reached its target.
     TargetReached {
         /// Robot time in seconds.
@@ -183,7 +199,27 @@ impl EventLog {
         waits: bool,
         echo: Option<Sender<(u64, Event)>>,
     ) -> io::Result<(Self, EventWriter)> {
-        let file = path.map(File::create).transpose()?;
+        Self::write_to(path.map(File::create).transpose()?, waits, echo)
+    }
+
+    /// As [`EventLog::open`], but goes on in the file where a container that died has ended. The half
+    /// line that such a one may leave is taken out.
+    ///
+    /// # Errors
+    /// If the file cannot be opened.
+    pub fn resume(
+        path: Option<&Path>,
+        waits: bool,
+        echo: Option<Sender<(u64, Event)>>,
+    ) -> io::Result<(Self, EventWriter)> {
+        Self::write_to(path.map(open_at_end).transpose()?, waits, echo)
+    }
+
+    fn write_to(
+        file: Option<File>,
+        waits: bool,
+        echo: Option<Sender<(u64, Event)>>,
+    ) -> io::Result<(Self, EventWriter)> {
         let (sender, receiver) = bounded(QUEUE);
         let thread = std::thread::Builder::new()
             .name("event-log".to_owned())

@@ -13,6 +13,7 @@ use super::Supervisor;
 use crate::clock::nanoseconds;
 use crate::guard::loss::LostThread;
 use crate::lane::{Crew, Lane, Work};
+use crate::outer_supervision::Supervised;
 
 /// The longest sleep of the thread that looks after time, so that it notices its end.
 const LONGEST_SLEEP: Duration = Duration::from_millis(100);
@@ -30,7 +31,7 @@ pub struct ManagerThreads {
 }
 
 impl ManagerThreads {
-    /// Starts all three.
+    /// Starts all three. A parent that supervises hears from the first.
     ///
     /// # Errors
     /// If the system refuses a thread.
@@ -39,11 +40,12 @@ impl ManagerThreads {
         supervisor: &Arc<Supervisor>,
         crew: &Arc<Crew>,
         wanted: Receiver<usize>,
+        supervised: Option<Arc<Supervised>>,
     ) -> io::Result<()> {
         let (stopping, clocked) = (Arc::clone(&self.stopping), Arc::clone(supervisor));
         let thread = std::thread::Builder::new()
             .name("fault-manager".to_owned())
-            .spawn(move || look_after_time(&clocked, &stopping))?;
+            .spawn(move || look_after_time(&clocked, supervised.as_deref(), &stopping))?;
         self.clock = Some(thread);
         let (stopping, reader) = (Arc::clone(&self.stopping), Arc::clone(supervisor));
         let thread = std::thread::Builder::new()
@@ -78,14 +80,28 @@ impl ManagerThreads {
     }
 }
 
-fn look_after_time(supervisor: &Supervisor, stopping: &AtomicBool) {
+fn look_after_time(
+    supervisor: &Supervisor,
+    supervised: Option<&Supervised>,
+    stopping: &AtomicBool,
+) {
     while !stopping.load(Ordering::Acquire) {
-        supervisor.tick();
+        let due_ns = look(supervisor, supervised);
         let now_ns = nanoseconds(supervisor.environment().clock.now());
-        let due_ns = supervisor.due_ns().unwrap_or(u64::MAX);
         let sleep = Duration::from_nanos(due_ns.saturating_sub(now_ns));
         supervisor.sleep(sleep.min(LONGEST_SLEEP));
     }
+}
+
+/// One look, which goes through all that the fault manager is made of: a parent hears of it only while
+/// none of it stands still. When the next one is due, in nanoseconds of the container's clock.
+fn look(supervisor: &Supervisor, supervised: Option<&Supervised>) -> u64 {
+    supervisor.tick();
+    let due_ns = supervisor.due_ns().unwrap_or(u64::MAX);
+    if let Some(supervised) = supervised {
+        supervised.beat();
+    }
+    due_ns
 }
 
 fn find_backtraces(supervisor: &Supervisor, stopping: &AtomicBool) {
@@ -115,4 +131,64 @@ impl Work for Preparation {
 
     /// The standby that was being prepared is lost with the thread: it is made when it is needed.
     fn after_loss(&mut self, _lost: &LostThread) {}
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Read as _;
+    use std::os::unix::net::UnixStream;
+
+    use fault_manager::FaultManager;
+
+    use super::*;
+    use crate::clock::Clock;
+    use crate::component::Environment;
+    use crate::device::Devices;
+    use crate::event_log::EventLog;
+    use crate::injection::Injections;
+    use crate::schedule::BusyTime;
+    use crate::supervision::{Emergency, Monitors, Observations, Scenes};
+
+    fn supervisor() -> Supervisor {
+        let (events, _writer) = EventLog::open(None, false, None).unwrap();
+        let environment = Environment {
+            clock: Clock::real(),
+            events,
+            devices: Devices::default(),
+            observations: Observations::default(),
+            scenes: Scenes::default(),
+            injections: Injections::default(),
+            world: None,
+            busy: BusyTime::default(),
+        };
+        let (supervisor, _wanted) = Supervisor::new(
+            Arc::new(environment),
+            FaultManager::new(Vec::new()),
+            Vec::new(),
+            Vec::new(),
+            Vec::new(),
+            Emergency::new(Vec::new()),
+            Monitors::default(),
+        );
+        supervisor
+    }
+
+    #[test]
+    fn a_fault_manager_that_stands_still_is_not_heard() {
+        let supervisor = supervisor();
+        let (mut parent, container) = UnixStream::pair().unwrap();
+        let supervised = Supervised::running_over(container);
+        std::thread::scope(|scope| {
+            // Somebody is in it and does not come out.
+            let inside = supervisor.lock();
+            let looking = scope.spawn(|| look(&supervisor, Some(&supervised)));
+            parent
+                .set_read_timeout(Some(Duration::from_millis(200)))
+                .unwrap();
+            assert!(parent.read(&mut [0]).is_err(), "a sign of life");
+            drop(inside);
+            looking.join().unwrap();
+            assert_eq!(parent.read(&mut [0]).unwrap(), 1, "now it is heard");
+        });
+    }
 }

@@ -149,7 +149,7 @@ fn rules_of_components() {
         filters_system_calls: false,
     };
     assert_eq!(isolation.limits, limits);
-    let actuator = motor.actuator.as_ref().unwrap().value;
+    let actuator = &motor.actuator.as_ref().unwrap().value;
     assert_eq!(actuator.stop_category, StopCategory::ControlledThenOff);
     assert_eq!(motor.ports[0].checks.safe_values[0].value.value, 0.0);
     assert_eq!(motor.adapt.as_ref().unwrap().value, "adapt.xml");

@@ -12,6 +12,7 @@ use super::declared::DeclaredSecondary;
 use super::detection::safe_values;
 use super::diagnosis::APPLICATION_SEVERITIES;
 use super::measure::{duration, located, positive_duration, required, setting, text};
+use super::safe_state::safe_state;
 use crate::node::Node;
 use crate::value::Value;
 
@@ -176,8 +177,13 @@ pub(super) fn actuator(node: &Node<'_>) -> (Option<Located<ActuatorRule>>, Vec<C
     });
     let commands = node.children("command");
     let commands = commands.iter().filter_map(command).collect();
+    let safe_states = node.children("safe_state");
+    let safe_states = safe_states.iter().filter_map(safe_state).collect();
     node.finish();
-    let rule = category.map(|stop_category| ActuatorRule { stop_category });
+    let rule = category.map(|stop_category| ActuatorRule {
+        stop_category,
+        safe_states,
+    });
     (rule.map(|rule| located(&node, rule)), commands)
 }
 

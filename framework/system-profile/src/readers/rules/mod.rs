@@ -9,6 +9,7 @@ mod handling;
 mod isolation;
 pub(super) mod measure;
 mod monitor;
+mod safe_state;
 
 use system_model::profile::Located;
 use system_model::rules::{ComponentRules, HeartbeatRule, PortChecks};
