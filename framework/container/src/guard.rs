@@ -12,6 +12,7 @@
 #![allow(unsafe_code)] // the whole point: foreign code, stacks, signals
 
 mod allocation;
+mod bare_trap;
 mod callback;
 mod code;
 mod copy;
@@ -39,6 +40,7 @@ use std::ptr;
 use component_abi::Callbacks;
 use corosensei::{Coroutine, CoroutineResult};
 
+pub use bare_trap::BareTrap;
 pub use callback::{Callback, Ending, ServiceCall};
 pub use code::{CodeRange, LoadedObject};
 pub use foreign::{ForeignBytes, ForeignBytesMut, ForeignText};

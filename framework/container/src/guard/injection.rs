@@ -65,10 +65,7 @@ pub(super) fn misbehave(side: &HostSide, misbehaviour: Misbehaviour) -> Option<S
         }
         Misbehaviour::Abort => interpose::abort(),
         Misbehaviour::Exit => interpose::exit(1),
-        Misbehaviour::Segfault => trap_in(|| {
-            // SAFETY: traps inside the section, which the handler takes for the component's code.
-            unsafe { steadfast_inject_read(ptr::null()) };
-        }),
+        Misbehaviour::Segfault => trap_in(read_null),
         Misbehaviour::BusError => {
             let page = page_without_backing();
             trap_in(|| {
@@ -96,6 +93,12 @@ pub(super) fn misbehave(side: &HostSide, misbehaviour: Misbehaviour) -> Option<S
             unsafe { steadfast_inject_hang() };
         }),
     }
+}
+
+/// Runs into a null pointer.
+pub(super) fn read_null() {
+    // SAFETY: traps inside the section, which the handler takes for the component's code.
+    unsafe { steadfast_inject_read(ptr::null()) };
 }
 
 /// Whether an instruction is one of the section's. Called inside handlers.
