@@ -36,6 +36,7 @@ use std::hint::black_box;
 use std::io;
 use std::mem;
 use std::ptr;
+use std::time::Instant;
 
 use component_abi::Callbacks;
 use corosensei::{Coroutine, CoroutineResult};
@@ -205,6 +206,11 @@ impl Guarded {
     /// that back. It happens once.
     pub fn inject(&mut self, misbehaviour: Option<Misbehaviour>) {
         self.side.set_injection(misbehaviour);
+    }
+
+    /// When it misbehaved last as it was made to, just before that: what benchmarks count from.
+    pub fn misbehaved(&self) -> Option<Instant> {
+        self.side.misbehaved.get()
     }
 
     /// From now on what callbacks allocate and do not free is counted.

@@ -46,6 +46,7 @@ pub enum Misbehaviour {
 /// run after all.
 #[cold]
 pub(super) fn misbehave(side: &HostSide, misbehaviour: Misbehaviour) -> Option<Status> {
+    side.misbehaved.set(Some(Instant::now()));
     match misbehaviour {
         Misbehaviour::Panic => Some(fail(side, "injected panic", Status::PANICKED)),
         Misbehaviour::ErrorReturn(status) => {
@@ -68,6 +69,7 @@ pub(super) fn misbehave(side: &HostSide, misbehaviour: Misbehaviour) -> Option<S
         Misbehaviour::Segfault => trap_in(read_null),
         Misbehaviour::BusError => {
             let page = page_without_backing();
+            side.misbehaved.set(Some(Instant::now()));
             trap_in(|| {
                 // SAFETY: as above.
                 unsafe { steadfast_inject_read(page) };
