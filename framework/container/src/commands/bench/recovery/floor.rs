@@ -4,15 +4,18 @@
 use std::io;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::process::{Child, Command, ExitCode, Stdio};
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use container::bare_wake::BareWake;
 use container::guard::BareTrap;
 use container::library::{LibrarySearch, LoadedLibrary};
+use rustix::process::{Signal, set_parent_process_death_signal};
 use serde::{Deserialize, Serialize};
 
-use super::real_time::{ask_for_real_time, lock_memory};
+use super::real_time::{PRIORITY, ask_for_real_time, lock_memory};
+use super::signalled::Signalled;
 use crate::commands::run::library_folders;
 
 /// From one operation to the next; in between others run, and each comes every 4 ms or so.
@@ -63,11 +66,15 @@ fn measure(arguments: &FloorArguments) -> io::Result<Vec<Operation>> {
     let search = LibrarySearch::new(library_folders(&arguments.library_path));
     let library = search.find(LIBRARY).map_err(io::Error::other)?;
     let _without = lock_memory();
-    let _without = ask_for_real_time();
+    let _without = ask_for_real_time(PRIORITY);
     let mut traps = Traps::new()?;
-    let mut operations: [(&str, Timed); 2] = [
-        ("trap", Box::new(move || traps.time())),
+    let signalled = Signalled::start()?;
+    let partner = Partner::start()?;
+    let mut operations: [(&str, Timed); 4] = [
         ("dlopen", Box::new(move || time_load(&library))),
+        ("trap", Box::new(move || traps.time())),
+        ("signal", Box::new(move || signalled.time())),
+        ("process_wake", Box::new(move || partner.time())),
     ];
     let mut samples: Vec<Vec<u64>> = vec![Vec::new(); operations.len()];
     for _ in 0..arguments.n {
@@ -107,6 +114,56 @@ impl Traps {
         }
         self.bare = Some(bare.renewed());
         Ok(took)
+    }
+}
+
+/// Another process, woken and waking back.
+struct Partner {
+    wake: BareWake,
+    process: Child,
+}
+
+impl Partner {
+    fn start() -> io::Result<Self> {
+        let wake = BareWake::create()?;
+        let process = Command::new(std::env::current_exe()?)
+            .args(["bench", "wake-partner"])
+            .arg(wake.path())
+            .stdin(Stdio::null())
+            .spawn()?;
+        // Until it is there.
+        wake.round_trip()?;
+        Ok(Self { wake, process })
+    }
+
+    fn time(&self) -> io::Result<u64> {
+        let start = Instant::now();
+        self.wake.round_trip()?;
+        Ok(nanoseconds(start.elapsed()))
+    }
+}
+
+impl Drop for Partner {
+    fn drop(&mut self) {
+        // If it has ended already both fail, which is as well.
+        let _ended_already = self.process.kill();
+        let _ended_already = self.process.wait();
+    }
+}
+
+/// Answers wake-ups, in the process that was started for it, until it is killed.
+pub fn run_partner(path: &Path) -> ExitCode {
+    let _without = ask_for_real_time(PRIORITY);
+    let dies = set_parent_process_death_signal(Some(Signal::KILL));
+    let answered = dies
+        .map_err(io::Error::from)
+        .and_then(|()| BareWake::open(path)?.answer());
+    match answered {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("steadfast bench wake-partner: {error}");
+            ExitCode::from(2)
+        }
     }
 }
 
