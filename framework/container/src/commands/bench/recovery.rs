@@ -11,6 +11,7 @@ mod batch;
 mod children;
 mod evaluation;
 mod floor;
+mod picture;
 mod plan;
 mod progress;
 mod real_time;
@@ -57,6 +58,9 @@ pub struct RecoveryArguments {
     /// A first impression within seconds: few faults, one load
     #[arg(long, conflicts_with_all = ["n", "load"])]
     quick: bool,
+    /// Draw the result to this file (SVG)
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
     /// How the result is written
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -138,6 +142,11 @@ fn measure(arguments: &RecoveryArguments) -> io::Result<Results> {
 }
 
 fn write(results: &Results, arguments: &RecoveryArguments) -> io::Result<()> {
+    if let Some(path) = &arguments.picture {
+        let named =
+            |error: io::Error| io::Error::new(error.kind(), format!("{}: {error}", path.display()));
+        std::fs::write(path, picture::draw(results)).map_err(named)?;
+    }
     let mut output = io::stdout().lock();
     match arguments.format {
         Format::Text => report::write_text(&mut output, results),

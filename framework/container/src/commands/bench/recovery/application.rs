@@ -221,3 +221,41 @@ fn connection(from: &str, to: &str) -> String {
          port_name=\"output\"/><target component_name=\"{to}\" port_name=\"input\"/></port_connection>\n"
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::commands::bench::recovery::batch::load;
+    use crate::commands::bench::recovery::plan::batches;
+    use crate::commands::bench::recovery::scenario::groups;
+
+    /// The rows of the report are what they say only if the rules are.
+    #[test]
+    fn every_application_is_read_with_its_rules_and_injections() {
+        for group in groups() {
+            let folder = tempfile::tempdir().expect("a folder");
+            let batch = batches(&group, 7).remove(0);
+            batch.write(folder.path()).expect("files");
+            let application = load(folder.path()).unwrap_or_else(|error| panic!("{error}"));
+            let relays = batch.relay_count() as usize;
+            assert_eq!(application.specification.components.len(), 1 + 2 * relays);
+            assert_eq!(application.injections.len(), relays);
+            for (number, handling) in batch.relays() {
+                let components = &application.specification.components;
+                let name = relay_name(number);
+                let index = components.iter().position(|it| it.name == name);
+                let rules = &application.rules.components[index.expect("the relay")];
+                let secondaries = match handling.secondary_preload() {
+                    Some(_) => batch.faults as usize,
+                    None => 0,
+                };
+                assert_eq!(rules.secondaries.len(), secondaries, "{name}");
+                assert_eq!(
+                    rules.standby.is_some(),
+                    handling == Handling::StandbyWarm,
+                    "{name}"
+                );
+            }
+        }
+    }
+}

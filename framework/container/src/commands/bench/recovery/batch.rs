@@ -102,7 +102,7 @@ fn expected(batch: &Batch) -> (usize, usize) {
 }
 
 /// Reads the application as `steadfast run` does.
-fn load(folder: &Path) -> io::Result<Application> {
+pub(super) fn load(folder: &Path) -> io::Result<Application> {
     let options = LoadOptions::default();
     let outcome = load_application(&folder.join(APPLICATION), &options);
     let specification = sound(outcome.specification, &outcome.problems)?;

@@ -67,10 +67,12 @@ pub(super) fn evaluate(batch: &Batch, seen: &[Seen], record: &Record) -> Vec<Row
 impl Row {
     fn add(&mut self, fault: Fault, number: u32, seen: &Seen, record: &Record) {
         let relay = relay_name(number);
-        let mut failures = 0;
-        for verdict in record.verdicts_of(&relay) {
-            failures += 1;
-            if let Some(times) = times(fault, self.handling, verdict, seen) {
+        let verdicts: Vec<&Verdict> = record.verdicts_of(&relay).collect();
+        let failures = verdicts.len() as u64;
+        for (index, verdict) in verdicts.iter().enumerate() {
+            let next = verdicts.get(index + 1);
+            let before_ns = next.map_or(u64::MAX, |next| next.first_symptom_ns);
+            if let Some(times) = times(fault, self.handling, verdict, seen, before_ns) {
                 self.times.push(times);
                 *self.notes.entry(note(verdict)).or_default() += 1;
             }
@@ -93,8 +95,15 @@ impl Row {
     }
 }
 
-/// The times of one fault; none if it was not handled in this way, or its end was not seen.
-fn times(fault: Fault, handling: Handling, verdict: &Verdict, seen: &Seen) -> Option<Times> {
+/// The times of one fault; none if it was not handled in this way, or its end was not seen before
+/// the next one.
+fn times(
+    fault: Fault,
+    handling: Handling,
+    verdict: &Verdict,
+    seen: &Seen,
+    before_ns: u64,
+) -> Option<Times> {
     let symptom_ns = verdict.first_symptom_ns;
     let begin_ns = match fault {
         Fault::OutOfRange => symptom_ns,
@@ -117,7 +126,7 @@ fn times(fault: Fault, handling: Handling, verdict: &Verdict, seen: &Seen) -> Op
         verdict.done_ns?
     } else {
         let mut works = seen.works_since_ns.iter().copied();
-        works.find(|works_ns| *works_ns >= symptom_ns)?
+        works.find(|works_ns| (symptom_ns..before_ns).contains(works_ns))?
     };
     let detection_ns = verdict.confirmed_ns.saturating_sub(begin_ns);
     let decision_ns = verdict.decision_us * 1000;
