@@ -3,6 +3,7 @@
 mod detection;
 mod load;
 mod machine;
+mod offspring;
 mod percentiles;
 mod processor_time;
 mod recovery;

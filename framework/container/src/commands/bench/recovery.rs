@@ -85,14 +85,20 @@ const QUICK_LOAD_PERCENT: u8 = 10;
 /// Of each operation of the floor: enough for a 99th percentile.
 const FLOOR_N: u32 = 500;
 
-/// Runs the study. The exit code is 2 if something cannot be started, read or written.
+/// Runs the study. The exit code is 2 if something cannot be started, measured, read or written; what
+/// was measured is written all the same.
 pub fn run(arguments: &RecoveryArguments) -> ExitCode {
-    match measure(arguments).and_then(|results| write(&results, arguments)) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("steadfast bench recovery: {error}");
-            ExitCode::from(2)
-        }
+    let failures = measure(arguments).and_then(|results| {
+        write(&results, arguments)?;
+        Ok(results.failures)
+    });
+    let failures = failures.unwrap_or_else(|error| vec![error.to_string()]);
+    for failure in &failures {
+        eprintln!("steadfast bench recovery: {failure}");
+    }
+    match failures.is_empty() {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::from(2),
     }
 }
 
@@ -127,7 +133,10 @@ fn measure(arguments: &RecoveryArguments) -> io::Result<Results> {
             let mut measured = Vec::new();
             for batch in batches {
                 progress.show(&format!("load {load_percent} %: {}", group.fault.name()));
-                measured.extend(measure_batch(&arguments.library_path, batch)?);
+                match measure_batch(&arguments.library_path, batch) {
+                    Ok(rows) => measured.extend(rows),
+                    Err(error) => results.failures.push(error.to_string()),
+                }
                 progress.advance();
             }
             let rows = RecoveryRow::of_group(group, load_percent, &measured);

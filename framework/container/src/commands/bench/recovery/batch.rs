@@ -4,6 +4,7 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::Args;
 use container::assembly::LibraryOptions;
@@ -18,8 +19,12 @@ use super::real_time::{ask_for_real_time, lock_memory};
 use super::record::Record;
 use super::scenario::{Fault, Handling};
 use super::witness::watch;
+use crate::commands::bench::offspring::{end_with_parent, end_within};
 use crate::commands::problems;
 use crate::commands::run::library_folders;
+
+/// Many times what a batch takes.
+const LIMIT: Duration = Duration::from_secs(300);
 
 /// What the process that measures a batch is asked to do.
 #[derive(Debug, Args)]
@@ -50,6 +55,8 @@ pub fn run(arguments: &BatchArguments) -> ExitCode {
 }
 
 fn measure(arguments: &BatchArguments) -> io::Result<Vec<Row>> {
+    end_with_parent()?;
+    end_within(LIMIT)?;
     let batch: Batch = serde_json::from_str(&arguments.batch)?;
     let folder = &arguments.folder;
     batch.write(folder)?;

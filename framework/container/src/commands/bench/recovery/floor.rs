@@ -11,15 +11,18 @@ use clap::Args;
 use container::bare_wake::BareWake;
 use container::guard::BareTrap;
 use container::library::{LibrarySearch, LoadedLibrary};
-use rustix::process::{Signal, set_parent_process_death_signal};
 use serde::{Deserialize, Serialize};
 
 use super::real_time::{PRIORITY, ask_for_real_time, lock_memory};
 use super::signalled::Signalled;
+use crate::commands::bench::offspring::{end_with_parent, end_within};
 use crate::commands::run::library_folders;
 
 /// From one operation to the next; in between others run, and each comes every 4 ms or so.
 const PAUSE: Duration = Duration::from_millis(1);
+
+/// Many times what the floor takes.
+const LIMIT: Duration = Duration::from_secs(300);
 
 /// What is loaded: the component under test.
 const LIBRARY: &str = "librelay.so";
@@ -63,6 +66,8 @@ pub fn run(arguments: &FloorArguments) -> ExitCode {
 }
 
 fn measure(arguments: &FloorArguments) -> io::Result<Vec<Operation>> {
+    end_with_parent()?;
+    end_within(LIMIT)?;
     let search = LibrarySearch::new(library_folders(&arguments.library_path));
     let library = search.find(LIBRARY).map_err(io::Error::other)?;
     let _without = lock_memory();
@@ -154,10 +159,7 @@ impl Drop for Partner {
 /// Answers wake-ups, in the process that was started for it, until it is killed.
 pub fn run_partner(path: &Path) -> ExitCode {
     let _without = ask_for_real_time(PRIORITY);
-    let dies = set_parent_process_death_signal(Some(Signal::KILL));
-    let answered = dies
-        .map_err(io::Error::from)
-        .and_then(|()| BareWake::open(path)?.answer());
+    let answered = end_with_parent().and_then(|()| BareWake::open(path)?.answer());
     match answered {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -13,7 +13,9 @@ const ROW_HEIGHT: f64 = 16.0;
 /// Title, loads, and names of the floor.
 const TOP: f64 = 130.0;
 /// Axis and legend.
-const BOTTOM: f64 = 70.0;
+const BOTTOM: f64 = 90.0;
+/// Title and legend need so much, however few panels there are.
+const LEAST_WIDTH: f64 = 860.0;
 /// From one name of the floor to the next, downwards.
 const FLOOR_NAME_HEIGHT: f64 = 13.0;
 /// One hue for each fault, in the order of the rows.
@@ -34,7 +36,7 @@ pub(super) fn draw(results: &Results) -> String {
     let rows = row_names(results);
     let scale = Scale::of(results);
     let panels = results.loads.len() as f64;
-    let width = LABELS_WIDTH + panels * (PANEL_WIDTH + GAP) + GAP;
+    let width = (LABELS_WIDTH + panels * (PANEL_WIDTH + GAP) + GAP).max(LEAST_WIDTH);
     let bottom = TOP + ROW_HEIGHT * rows.len() as f64;
     let height = bottom + BOTTOM;
     let mut svg = format!(
@@ -60,7 +62,7 @@ pub(super) fn draw(results: &Results) -> String {
         panel.draw_axis(&mut svg);
         let floor = results.floor.iter();
         let floor = floor.filter(|row| row.load_percent == load.load_percent);
-        panel.draw_floor(&mut svg, &floor.collect::<Vec<_>>());
+        panel.draw_floor(&mut svg, floor.collect());
         for row in (results.rows.iter()).filter(|row| row.load_percent == load.load_percent) {
             if let Some(place) = rows.iter().position(|name| *name == names_of(row)) {
                 panel.draw_row(&mut svg, place, hue(&rows, row.fault), &row.total_us);
@@ -128,9 +130,10 @@ fn draw_legend(svg: &mut String, bottom: f64) {
         y + 4.0,
         x + 90.0
     );
-    let words = "dot: median; stroke: 99 %; end of the line: 99.9 %; circle: longest; lines from top \
-                 to bottom: the floor's medians, and the 20 ms of Ahn et al. (2012)";
+    let words = "dot: median; stroke: 99 %; end of the line: 99.9 %; circle: longest";
     text(svg, [x + 104.0, y + 4.0], "start", "#444444", 12, words);
+    let words = "from top to bottom: medians of the floor, and the 20 ms of Ahn et al. (2012)";
+    text(svg, [x + 104.0, y + 22.0], "start", "#444444", 12, words);
 }
 
 /// One load.
@@ -163,7 +166,9 @@ impl Panel<'_> {
         }
     }
 
-    fn draw_floor(&self, svg: &mut String, floor: &[&FloorRow]) {
+    fn draw_floor(&self, svg: &mut String, mut floor: Vec<&FloorRow>) {
+        // The farther to the right the lower: so no line goes through another one's name.
+        floor.sort_by(|one, other| other.us.p50.total_cmp(&one.us.p50));
         for (index, row) in floor.iter().enumerate() {
             let x = self.x(row.us.p50);
             let y = TOP - 6.0 - FLOOR_NAME_HEIGHT * index as f64;

@@ -97,7 +97,8 @@ fn write_remarks(output: &mut impl Write, results: &Results) -> io::Result<()> {
         if row.total_us.p999 > PAPER_US {
             writeln!(
                 output,
-                "over 20 ms at p99.9: {fault}, {handling}, load {load_percent} %"
+                "over 20 ms at p99.9: {fault}, {handling}, load {load_percent} %: {}",
+                reason(results, row)
             )?;
         }
         if row.notes.len() > 1 {
@@ -112,6 +113,18 @@ fn write_remarks(output: &mut impl Write, results: &Results) -> io::Result<()> {
         }
     }
     Ok(())
+}
+
+/// Why a row takes so long, where it can be known.
+fn reason(results: &Results, row: &RecoveryRow) -> &'static str {
+    let made_at_once = |note: &String| note.split(',').next() == Some("by a fresh instance");
+    if !results.machine.real_time {
+        "executors share the processors with the load"
+    } else if row.notes.keys().any(made_at_once) {
+        "a library was loaded on the way, because no standby was ready"
+    } else {
+        "the reason is not known"
+    }
 }
 
 fn named(note: &str) -> &str {

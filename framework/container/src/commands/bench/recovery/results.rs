@@ -22,6 +22,9 @@ pub(super) struct Results {
     pub(super) loads: Vec<LoadRow>,
     /// Faults and their handling.
     pub(super) rows: Vec<RecoveryRow>,
+    /// What could not be measured, and why.
+    #[serde(skip)]
+    pub(super) failures: Vec<String>,
 }
 
 /// One operation at one load.
@@ -86,6 +89,7 @@ impl Results {
             floor: Vec::new(),
             loads: Vec::new(),
             rows: Vec::new(),
+            failures: Vec::new(),
         }
     }
 }

@@ -12,6 +12,8 @@ use std::time::{Duration, Instant};
 use nix::sys::pthread::pthread_kill;
 use nix::sys::signal::Signal;
 
+use super::real_time::{PRIORITY, ask_for_real_time};
+
 /// Any signal that nobody else in this process uses.
 const SIGNAL: Signal = Signal::SIGUSR1;
 
@@ -29,7 +31,7 @@ pub(super) struct Signalled {
 }
 
 impl Signalled {
-    /// Starts the thread, with the scheduling of the caller.
+    /// Starts the thread.
     ///
     /// # Errors
     /// If the system refuses the thread or the handler.
@@ -41,6 +43,8 @@ impl Signalled {
         let thread = std::thread::Builder::new()
             .name("signalled".to_owned())
             .spawn(move || {
+                // Below whoever signals, as a component is below the watchdog.
+                let _without = ask_for_real_time(PRIORITY - 1);
                 while begun.recv().is_ok() {
                     let start = Instant::now();
                     while !flag.swap(false, Ordering::AcqRel) && start.elapsed() < PATIENCE {
