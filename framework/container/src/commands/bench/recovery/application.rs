@@ -14,11 +14,11 @@ use super::scenario::{Fault, Group, Handling};
 /// Of all components, in milliseconds: 1 kHz.
 pub(super) const PERIOD_MS: u64 = 1;
 
-/// How long a callback may take: two periods.
-pub(super) const CALLBACK_DEADLINE_MS: u64 = 2;
+/// How long a callback may take: a period.
+pub(super) const CALLBACK_DEADLINE_MS: u64 = 1;
 
 /// Cycles before the first fault: all threads have started, first checkpoints have been taken.
-const QUIET_CYCLES: u64 = 100;
+const QUIET_CYCLES: u64 = 50;
 
 /// Checkpoints are as old as in a controller of 100 Hz that takes one every cycle.
 const BACKUP_MS: u64 = 10;
@@ -41,8 +41,6 @@ pub(super) struct Batch {
     pub(super) chains: u32,
     /// Faults of each component.
     pub(super) faults: u32,
-    /// Cycles from one fault to the next one, of another component.
-    pub(super) spacing_cycles: u64,
 }
 
 impl Batch {
@@ -50,11 +48,6 @@ impl Batch {
     pub(super) fn relays(&self) -> impl Iterator<Item = (u32, Handling)> + '_ {
         let handlings = (0..self.chains).flat_map(|_| self.group.handlings.iter().copied());
         (0..).zip(handlings)
-    }
-
-    /// How many components are under test.
-    pub(super) fn relay_count(&self) -> u64 {
-        self.relays().fold(0, |count, _| count + 1)
     }
 
     /// Writes all files to a folder.
@@ -154,7 +147,7 @@ impl Batch {
 
     /// Faults come one after the other, component by component, round and round.
     fn injections(&self) -> String {
-        let every = self.relay_count() * self.spacing_cycles;
+        let every: u64 = self.relays().map(|(_, it)| it.cycles()).sum();
         let repeat = self.faults;
         let what = match self.group.fault {
             Fault::Trap => "fault=\"segfault\"",
@@ -167,14 +160,15 @@ impl Batch {
             }
         };
         let mut injections = String::new();
-        for (number, _) in self.relays() {
+        let mut first = QUIET_CYCLES;
+        for (number, handling) in self.relays() {
             let relay = relay_name(number);
-            let first = QUIET_CYCLES + u64::from(number) * self.spacing_cycles;
             let _infallible = writeln!(
                 injections,
                 "<inject at_cycle=\"{first}\" every_cycles=\"{every}\" repeat=\"{repeat}\" \
                  component=\"{relay}\" {what}/>"
             );
+            first += handling.cycles();
         }
         format!("<fault_injections application=\"recovery\">\n{injections}</fault_injections>\n")
     }
@@ -237,7 +231,7 @@ mod tests {
             let batch = batches(&group, 7).remove(0);
             batch.write(folder.path()).expect("files");
             let application = load(folder.path()).unwrap_or_else(|error| panic!("{error}"));
-            let relays = batch.relay_count() as usize;
+            let relays = batch.relays().count();
             assert_eq!(application.specification.components.len(), 1 + 2 * relays);
             assert_eq!(application.injections.len(), relays);
             for (number, handling) in batch.relays() {

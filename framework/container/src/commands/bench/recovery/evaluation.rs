@@ -169,7 +169,6 @@ mod tests {
             },
             chains: 2,
             faults: 1,
-            spacing_cycles: 2,
         }
     }
 

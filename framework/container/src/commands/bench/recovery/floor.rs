@@ -18,8 +18,9 @@ use super::signalled::Signalled;
 use crate::commands::bench::offspring::{end_with_parent, end_within};
 use crate::commands::run::library_folders;
 
-/// From one operation to the next; in between others run, and each comes every 4 ms or so.
-const PAUSE: Duration = Duration::from_millis(1);
+/// From one operation to the next. In between others run, and each comes every 2 ms or so, about as
+/// often as a fault does in an application under test.
+const PAUSE: Duration = Duration::from_micros(300);
 
 /// Many times what the floor takes.
 const LIMIT: Duration = Duration::from_secs(300);

@@ -9,14 +9,7 @@ const CHAINS: u32 = 5;
 
 /// Faults of one component in one process. A secondary is used once, so this many stand in its
 /// rules; every fault may leave an instance and a copy of the library behind, 300 KB or so.
-const FAULTS: u32 = 40;
-
-/// Cycles, which are milliseconds, from one fault to the next one: handling takes a tenth of that,
-/// what is left is other work that disturbs the caches.
-const SPACING_CYCLES: u64 = 2;
-
-/// The same after an emergency stop, which is cleared first.
-const SPACING_OF_STOPS_CYCLES: u64 = 3;
+const FAULTS: u32 = 50;
 
 /// Emergency stops in one process.
 const STOPS: u32 = 500;
@@ -24,9 +17,9 @@ const STOPS: u32 = 500;
 /// Processes that together measure `n` faults of each row of a group.
 pub(super) fn batches(group: &Group, n: u32) -> Vec<Batch> {
     let stops = group.handlings.contains(&Handling::EmergencyStop);
-    let (chains, most, spacing_cycles) = match stops {
-        true => (1, STOPS, SPACING_OF_STOPS_CYCLES),
-        false => (CHAINS, FAULTS, SPACING_CYCLES),
+    let (chains, most) = match stops {
+        true => (1, STOPS),
+        false => (CHAINS, FAULTS),
     };
     let mut left = n;
     let mut batches = Vec::new();
@@ -38,7 +31,6 @@ pub(super) fn batches(group: &Group, n: u32) -> Vec<Batch> {
             group: group.clone(),
             chains,
             faults: faults + in_vain,
-            spacing_cycles,
         });
         left = left.saturating_sub(faults * chains);
     }

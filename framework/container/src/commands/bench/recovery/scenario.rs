@@ -107,6 +107,18 @@ impl Handling {
         }
     }
 
+    /// Cycles, which are milliseconds, from a fault that is handled so to the next one, of another
+    /// component. Handling takes a tenth of one, and what is left is other work; a library that is
+    /// loaded on the way takes most of one more, and an emergency stop is looked at before it is
+    /// cleared.
+    pub(super) fn cycles(self) -> u64 {
+        match self {
+            Self::SecondaryCold => 2,
+            Self::EmergencyStop => 3,
+            _ => 1,
+        }
+    }
+
     /// Grade of the secondaries, where these handle the fault.
     pub(super) fn secondary_preload(self) -> Option<&'static str> {
         match self {
