@@ -22,7 +22,7 @@ fn recovery_is_measured_for_every_fault_and_handling() {
     let picture = folder.path().join("recovery.svg");
     let mut bench = Command::new(artifacts().join("steadfast"));
     bench
-        .args(["bench", "recovery", "--quick", "--format", "json"])
+        .args(["bench", "recovery", "--quick", "--all", "--format", "json"])
         .arg("--picture")
         .arg(&picture)
         .env("TMPDIR", folder.path());

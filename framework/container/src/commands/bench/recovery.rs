@@ -55,6 +55,9 @@ pub struct RecoveryArguments {
     /// Faults of each row
     #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=5_000))]
     n: u32,
+    /// Also the rows that differ from another one in nothing but detection
+    #[arg(long)]
+    all: bool,
     /// A first impression within seconds: few faults, one load
     #[arg(long, conflicts_with_all = ["n", "load"])]
     quick: bool,
@@ -115,7 +118,7 @@ fn measure(arguments: &RecoveryArguments) -> io::Result<Results> {
              as root, or with CAP_SYS_NICE"
         );
     }
-    let work: Vec<(Group, Vec<Batch>)> = groups()
+    let work: Vec<(Group, Vec<Batch>)> = groups(arguments.all)
         .into_iter()
         .map(|group| (group.clone(), batches(&group, n)))
         .collect();

@@ -226,7 +226,7 @@ mod tests {
     /// The rows of the report are what they say only if the rules are.
     #[test]
     fn every_application_is_read_with_its_rules_and_injections() {
-        for group in groups() {
+        for group in groups(true) {
             let folder = tempfile::tempdir().expect("a folder");
             let batch = batches(&group, 7).remove(0);
             batch.write(folder.path()).expect("files");

@@ -20,7 +20,7 @@ use crate::commands::run::library_folders;
 
 /// From one operation to the next. In between others run, and each comes every 2 ms or so, about as
 /// often as a fault does in an application under test.
-const PAUSE: Duration = Duration::from_micros(300);
+const PAUSE: Duration = Duration::from_micros(400);
 
 /// Many times what the floor takes.
 const LIMIT: Duration = Duration::from_secs(300);

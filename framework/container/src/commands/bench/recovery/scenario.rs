@@ -108,14 +108,13 @@ impl Handling {
     }
 
     /// Cycles, which are milliseconds, from a fault that is handled so to the next one, of another
-    /// component. Handling takes a tenth of one, and what is left is other work; a library that is
-    /// loaded on the way takes most of one more, and an emergency stop is looked at before it is
-    /// cleared.
+    /// component. Handling takes a tenth of one; what is left is other work that disturbs the caches,
+    /// and time for another standby. A library that is loaded on the way takes most of one more, and
+    /// an emergency stop is looked at before it is cleared.
     pub(super) fn cycles(self) -> u64 {
         match self {
-            Self::SecondaryCold => 2,
-            Self::EmergencyStop => 3,
-            _ => 1,
+            Self::SecondaryCold | Self::EmergencyStop => 3,
+            _ => 2,
         }
     }
 
@@ -142,17 +141,27 @@ pub(super) struct Group {
     pub(super) handlings: Vec<Handling>,
 }
 
-/// All rows. An emergency stop stops everything, so it has an application of its own; how it comes
-/// about does not matter to it, so it is measured for a component that dies and for bad data.
-pub(super) fn groups() -> Vec<Group> {
+/// The rows; `all` of them, or without those that differ from another one in nothing but detection:
+/// what it takes to put a secondary in the place of an instance depends on how far it was prepared,
+/// and on whether the old one is dead (trap) or has to be given up (error return).
+///
+/// An emergency stop stops everything, so it has an application of its own; how it comes about does
+/// not matter to it, so it is measured for a component that dies and for bad data.
+pub(super) fn groups(all: bool) -> Vec<Group> {
     let tier = Tier::Guarded;
     let recoveries = |fault: Fault| {
+        let is_wanted = |it: &Handling| match it {
+            Handling::StandbyWarm => !fault.leaves_instance(),
+            Handling::SecondaryCold | Handling::SecondaryLoaded => {
+                all || matches!(fault, Fault::Trap | Fault::ErrorReturn)
+            }
+            _ => true,
+        };
         let handlings = Handling::RECOVERIES.into_iter();
-        let sensible = |it: &Handling| *it != Handling::StandbyWarm || !fault.leaves_instance();
         Group {
             tier,
             fault,
-            handlings: handlings.filter(sensible).collect(),
+            handlings: handlings.filter(is_wanted).collect(),
         }
     };
     let stop = |fault| Group {
