@@ -4,6 +4,7 @@
 mod backtraces;
 mod bad_files;
 mod bad_libraries;
+mod bench;
 mod c_component;
 mod clocks;
 mod control;

@@ -183,7 +183,7 @@ fn secondaries<'rules>(
     (0..specification.components.len())
         .map(|index| {
             let candidates = of(index).iter().filter_map(|rule| {
-                let library = libraries.load(&rule.specification)?;
+                let library = libraries.look_at(&rule.specification)?;
                 Some(secondary::Candidate { rule, library })
             });
             candidates.collect()
@@ -202,11 +202,13 @@ fn factories(
     let components = specification.components.iter().zip(primaries);
     let all = components.zip(secondaries).enumerate();
     all.map(|(number, ((component, library), secondaries))| {
+        let rules = rules.components.get(number).cloned().unwrap_or_default();
+        let standby = rules.standby.as_ref().map(|rule| rule.value);
         let mut variants = vec![Variant {
             specification: component.clone(),
             path: library.path.clone(),
             description: library.description.clone(),
-            preload: Preload::Cold,
+            preload: standby.unwrap_or(Preload::Cold),
         }];
         variants.extend(secondaries.into_iter().map(|candidate| Variant {
             specification: candidate.rule.specification.clone(),
@@ -214,7 +216,6 @@ fn factories(
             description: candidate.library.description,
             preload: candidate.rule.preload,
         }));
-        let rules = rules.components.get(number).cloned().unwrap_or_default();
         let environment = Arc::clone(environment);
         Arc::new(Factory::new(
             number,

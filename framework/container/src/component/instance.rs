@@ -1,6 +1,6 @@
 //! An instance of a component, wherever it runs: behind the guard in this process, or in a host.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crate::guard::loss::Loss;
 use crate::guard::{self, CallLimit, Callback, Ending, Guarded, HostServices, Misbehaviour, Trap};
@@ -114,6 +114,14 @@ impl Instance {
         match self {
             Self::Guarded(guarded) => guarded.inject(misbehaviour),
             Self::Hosted(hosted) => hosted.inject(misbehaviour),
+        }
+    }
+
+    /// When it misbehaved last as it was made to, just before that.
+    pub fn misbehaved(&self) -> Option<Instant> {
+        match self {
+            Self::Guarded(guarded) => guarded.misbehaved(),
+            Self::Hosted(hosted) => hosted.misbehaved(),
         }
     }
 

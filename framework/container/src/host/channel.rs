@@ -31,7 +31,7 @@ const TEXT: usize = 184;
 const WORDS: usize = 192;
 
 /// Words of a message.
-pub(super) const WORD_COUNT: usize = 16;
+pub(super) const WORD_COUNT: usize = 24;
 
 /// Turns.
 const HOST: u32 = 1;

@@ -4,11 +4,12 @@ use std::time::Duration;
 
 use component_abi::Status;
 
+use super::channel::WORD_COUNT;
 use super::message::{number, size};
 use crate::guard::{Ending, Exit, Misbehaviour, Registers, Trap};
 
 /// Words of an ending.
-const WORDS: usize = 14;
+const WORDS: usize = WORD_COUNT - 2;
 
 /// How a callback ended, with what else is to be said then.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,6 +20,8 @@ pub(super) struct HostEnding {
     pub(super) stray: Option<Trap>,
     /// Bytes that callbacks have allocated and not freed, where that is counted.
     pub(super) allocated_bytes: u64,
+    /// When it misbehaved as it was made to, by the machine's monotonic clock; 0 if it never did.
+    pub(super) misbehaved_ns: u64,
 }
 
 impl HostEnding {
@@ -34,6 +37,7 @@ impl HostEnding {
         words[0] = kind;
         words[1] = argument;
         words[2] = self.allocated_bytes;
+        words[14] = self.misbehaved_ns;
         if trap == 1
             && let Ending::Trapped(trap) = self.ending
         {
@@ -63,6 +67,7 @@ impl HostEnding {
             ending,
             stray,
             allocated_bytes: words[2],
+            misbehaved_ns: words[14],
         })
     }
 }
@@ -153,6 +158,7 @@ mod tests {
                     ending,
                     stray,
                     allocated_bytes: 7,
+                    misbehaved_ns: 8,
                 };
                 assert_eq!(HostEnding::from_words(said.words()), Some(said));
             }

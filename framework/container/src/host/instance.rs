@@ -5,7 +5,7 @@ use std::os::fd::{AsFd as _, OwnedFd};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::thread::ThreadId;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use system_model::rules::ProcessLimits;
 
@@ -52,6 +52,7 @@ pub struct Hosted {
     injection: Option<Misbehaviour>,
     forgets_allocations: bool,
     allocated_bytes: u64,
+    misbehaved: Option<Instant>,
     stray: Option<Trap>,
     /// Whose policy and priority the host's thread has.
     followed: Option<ThreadId>,
@@ -125,6 +126,7 @@ impl Hosted {
             injection: None,
             forgets_allocations: false,
             allocated_bytes: 0,
+            misbehaved: None,
             stray: None,
             followed: None,
             scheduling: Scheduling::NORMAL,
@@ -188,6 +190,11 @@ impl Hosted {
     /// Lets the component misbehave when its next callback is due.
     pub fn inject(&mut self, misbehaviour: Option<Misbehaviour>) {
         self.injection = misbehaviour;
+    }
+
+    /// When it misbehaved last as it was made to.
+    pub fn misbehaved(&self) -> Option<Instant> {
+        self.misbehaved
     }
 
     /// Bytes that callbacks have allocated and not freed.
@@ -289,6 +296,10 @@ impl Hosted {
         services: &mut Services,
     ) -> Ending {
         self.allocated_bytes = ended.allocated_bytes;
+        if ended.misbehaved_ns > 0 {
+            let ago = monotonic_ns().saturating_sub(ended.misbehaved_ns);
+            self.misbehaved = Instant::now().checked_sub(Duration::from_nanos(ago));
+        }
         self.stray = self.stray.or(ended.stray);
         if let Ending::Returned(status) = ended.ending {
             if status != component_abi::Status::PANICKED {

@@ -11,10 +11,11 @@ use super::channel::Channel;
 use super::ending::HostEnding;
 use super::limits;
 use super::message::{Call, CallbackWords, PLAIN, ToContainer, ToHost};
-use super::remote::Remote;
+use super::remote::{Remote, monotonic_ns};
 use super::robust::SignsOfLife;
 use super::setup::Setup;
 use super::socket;
+use crate::clock::nanoseconds;
 use crate::guard::loss::{Loss, losses, wait_for_loss};
 use crate::guard::{CallLimit, Callback, Ending, Guarded, ServiceCall, Trap, interrupt};
 use crate::library::LoadedLibrary;
@@ -136,6 +137,9 @@ fn run(post: &Arc<Post>, devices: OwnedFd) {
             ending,
             stray: guarded.look_for_stray_fault(),
             allocated_bytes: guarded.allocated_bytes(),
+            misbehaved_ns: guarded.misbehaved().map_or(0, |acted| {
+                monotonic_ns().saturating_sub(nanoseconds(acted.elapsed()))
+            }),
         };
         channel.say(&ToContainer::Ended(ended).words(remote.take_written()));
         let scene = match ending {
@@ -239,6 +243,7 @@ fn tell_loss(post: &Post, trap: Trap) {
         ending: Ending::Trapped(trap),
         stray: None,
         allocated_bytes: 0,
+        misbehaved_ns: 0,
     };
     post.channel.say(&ToContainer::Ended(ended).words(0));
     post.channel.hand_to_container();
