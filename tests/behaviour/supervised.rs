@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use rustix::process::Signal;
 use serde_json::Value;
-use tests::{Application, Member, Outcome, Supervised, Watched, until};
+use tests::{Application, Member, Outcome, Supervised, Watched, take_turn, until};
 
 /// What a busy machine gets for what takes a second or two.
 const LIMIT: Duration = Duration::from_secs(60);
@@ -132,6 +132,7 @@ fn when_the_restarts_are_used_up_it_gives_up() {
 /// At any moment: while it is brought up, while it runs.
 #[test]
 fn two_hundred_kills_leave_nothing_behind() {
+    let _turn = take_turn();
     let application = application();
     let run = start(&application, &["--restarts", "1000"]);
     let processes = Supervised::by(&run);

@@ -10,6 +10,7 @@ mod member;
 mod operator;
 mod outcome;
 mod supervised;
+mod turn;
 mod watchdog;
 
 pub use application::Application;
@@ -19,4 +20,5 @@ pub use member::Member;
 pub use operator::Operator;
 pub use outcome::Outcome;
 pub use supervised::Supervised;
+pub use turn::take_turn;
 pub use watchdog::{Finished, Watched, repository, until};

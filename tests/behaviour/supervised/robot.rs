@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use rustix::process::Signal;
-use tests::{Application, Supervised, Watched, repository, until};
+use tests::{Application, Supervised, Watched, repository, take_turn, until};
 
 use super::{LIMIT, PATIENT};
 
@@ -30,6 +30,7 @@ fn picture(application: &Application) -> PathBuf {
 
 #[test]
 fn it_reaches_its_target_although_its_container_was_killed() {
+    let _turn = take_turn();
     let application = Application::new();
     let path = picture(&application);
     let run = start(&application, &["--picture", &path.display().to_string()]);
@@ -50,6 +51,7 @@ fn it_reaches_its_target_although_its_container_was_killed() {
 
 #[test]
 fn nothing_is_left_of_a_parent_that_was_killed() {
+    let _turn = take_turn();
     let application = Application::new();
     let run = start(&application, &[]);
     let processes = Supervised::by(&run);
@@ -62,6 +64,7 @@ fn nothing_is_left_of_a_parent_that_was_killed() {
 
 #[test]
 fn a_world_that_dies_ends_the_run() {
+    let _turn = take_turn();
     let application = Application::new();
     let run = start(&application, &[]);
     let processes = Supervised::by(&run);

@@ -1,9 +1,9 @@
 //! The parent: starts the container, watches it, restarts it.
 
 mod container;
+mod plan;
 mod record;
 
-use std::ffi::OsString;
 use std::io;
 use std::os::fd::AsFd as _;
 use std::path::PathBuf;
@@ -11,7 +11,6 @@ use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::process::Signal;
-use system_model::rules::SafeStateRule;
 
 use super::budget::{Budget, RESTART_WINDOW};
 use super::hardware_watchdog::HardwareWatchdog;
@@ -19,7 +18,6 @@ use super::judgement::{End, Judgement, judge};
 use super::liveness::{Limits, Phase, START_LIMIT, STOP_LIMIT};
 use super::messages::{Death, Welcome};
 use super::monotonic;
-use super::process::KILL_LIMIT;
 use super::safe_states::SafeStates;
 use super::service_manager::ServiceManager;
 use super::signals::Signals;
@@ -27,63 +25,7 @@ use super::world_process::{NoWorld, WorldProcess};
 use crate::clock::nanoseconds;
 use container::Container;
 
-/// Exit code of a parent that has given up.
-pub const GIVEN_UP: u8 = 7;
-
-/// What a parent is to do.
-#[derive(Debug)]
-pub struct Plan {
-    /// The binary that containers and worlds are.
-    pub executable: PathBuf,
-    /// What a container is called with, but for the number of its parent.
-    pub arguments: Vec<OsString>,
-    /// The simulated world, if the applications drive in one.
-    pub world: Option<PlannedWorld>,
-    /// How often the container may be restarted within [`RESTART_WINDOW`].
-    pub restarts: u32,
-    /// How long a running container may be silent.
-    pub beat_limit: Duration,
-    /// The watchdog device of the machine, if it is to be used.
-    pub hardware_watchdog: Option<PathBuf>,
-    /// What actuators are told while no container runs.
-    pub safe_states: Vec<SafeStateRule>,
-    /// Where containers write their events; each goes on where the one before has ended.
-    pub events: Option<PathBuf>,
-}
-
-/// The simulated world of a run.
-#[derive(Debug)]
-pub struct PlannedWorld {
-    /// Its file.
-    pub file: PathBuf,
-    /// Its seed.
-    pub seed: u64,
-}
-
-/// Why a parent has nothing (more) to supervise.
-#[derive(Debug, thiserror::Error)]
-pub enum SuperviseError {
-    /// A file cannot be opened or written.
-    #[error("{} cannot be opened or written: {error}", .path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        error: io::Error,
-    },
-    /// The system refuses.
-    #[error("the container cannot be supervised: {0}")]
-    System(#[from] io::Error),
-    /// A killed container does not end.
-    #[error(
-        "the container was killed and has not ended within {} s: it waits for hardware that does not answer",
-        KILL_LIMIT.as_secs()
-    )]
-    DoesNotEnd,
-    /// The simulated world has ended by itself.
-    #[error("the process of the simulated world has ended, and the run with it")]
-    WorldEnded,
-}
+pub use plan::{GIVEN_UP, Plan, PlannedWorld, SuperviseError};
 
 /// Supervises a container to the end of its run: the exit code that says how it ended. Must be called
 /// on the main thread of the process, for the children die with the thread.
