@@ -189,17 +189,18 @@ fn factories(
     let components = specification.components.iter().zip(primaries);
     let all = components.zip(secondaries).enumerate();
     all.map(|(number, ((component, library), secondaries))| {
+        let rules = rules.components.get(number).cloned().unwrap_or_default();
+        let standby = rules.standby.as_ref().map(|rule| rule.value);
         let mut variants = vec![Variant {
             specification: component.clone(),
             path: library.path.clone(),
-            preload: Preload::Cold,
+            preload: standby.unwrap_or(Preload::Cold),
         }];
         variants.extend(secondaries.into_iter().map(|candidate| Variant {
             specification: candidate.rule.specification.clone(),
             path: candidate.library.path,
             preload: candidate.rule.preload,
         }));
-        let rules = rules.components.get(number).cloned().unwrap_or_default();
         let environment = Arc::clone(environment);
         Arc::new(Factory::new(number, variants, rules, environment))
     })

@@ -36,6 +36,14 @@ impl Clock {
         }
     }
 
+    /// The time at an instant of the machine's clock; none where time is simulated.
+    pub fn at_ns(&self, instant: Instant) -> Option<u64> {
+        match self {
+            Self::Real(start) => Some(nanoseconds(instant.saturating_duration_since(*start))),
+            Self::Simulated(_) => None,
+        }
+    }
+
     /// Time since the application started.
     pub fn now(&self) -> Duration {
         Duration::from_nanos(self.now_ns())

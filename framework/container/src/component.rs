@@ -264,6 +264,8 @@ impl Component {
     #[cold]
     pub fn prove(&mut self) {
         self.unproven = false;
+        let now_ns = self.services.environment().clock.now_ns();
+        self.status.set_works_since_ns(now_ns);
         if let Some(component) = self.services.detectors().map(|all| all.component) {
             self.services
                 .environment()

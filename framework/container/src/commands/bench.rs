@@ -1,6 +1,11 @@
 //! `steadfast bench`: how good Steadfast is at what it does, measured here and now.
 
 mod detection;
+mod load;
+mod machine;
+mod percentiles;
+mod processor_time;
+mod recovery;
 
 use std::process::ExitCode;
 
@@ -17,11 +22,22 @@ pub struct BenchArguments {
 enum Study {
     /// Motor driver fault: detection delay against false alarms for each decision rule.
     Detection(detection::DetectionArguments),
+    /// How long it takes from a fault until its component works again, under load.
+    Recovery(recovery::RecoveryArguments),
+    /// Keep all processors busy for a share of their time, until killed.
+    #[command(hide = true)]
+    Load(load::LoadArguments),
+    /// Measure the floor of `bench recovery` in this process.
+    #[command(hide = true)]
+    Floor(recovery::FloorArguments),
 }
 
 /// Runs a study and writes its result to standard output.
 pub fn run(arguments: &BenchArguments) -> ExitCode {
     match &arguments.study {
         Study::Detection(arguments) => detection::run(arguments),
+        Study::Recovery(arguments) => recovery::run(arguments),
+        Study::Load(arguments) => load::run(arguments),
+        Study::Floor(arguments) => recovery::run_floor(arguments),
     }
 }

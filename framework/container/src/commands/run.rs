@@ -224,23 +224,28 @@ fn watch_signals() -> Result<Arc<AtomicBool>, Failed> {
     Ok(asked)
 }
 
-/// Libraries: the folders given, those of the environment, then the folder of this executable.
+/// Where libraries are found and how they are probed.
 fn libraries(arguments: &RunArguments) -> LibraryOptions {
-    let executable = std::env::current_exe().ok();
-    let mut folders = arguments.library_path.clone();
+    LibraryOptions {
+        search: LibrarySearch::new(library_folders(&arguments.library_path)),
+        probe: std::env::current_exe().ok(),
+    }
+}
+
+/// Folders of libraries: those given, those of the environment, then that of this executable.
+pub fn library_folders(given: &[PathBuf]) -> Vec<PathBuf> {
+    let mut folders = given.to_vec();
     if let Some(variable) = std::env::var_os(LIBRARY_PATH_VARIABLE) {
         folders.extend(std::env::split_paths(&variable));
     }
+    let executable = std::env::current_exe().ok();
     folders.extend(
         executable
             .as_deref()
             .and_then(Path::parent)
             .map(PathBuf::from),
     );
-    LibraryOptions {
-        search: LibrarySearch::new(folders),
-        probe: executable,
-    }
+    folders
 }
 
 fn write(path: &Path, content: &[u8]) -> Result<(), Failed> {

@@ -70,7 +70,8 @@ pub struct Secondary {
     pub preload: Preload,
 }
 
-/// How much of a secondary is prepared before it is needed.
+/// How much of an instance is prepared before it is needed: of a secondary, or, by `standby`, of the
+/// component itself for a reset of an instance that cannot be called any more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Preload {
     /// Nothing. The default, as in the paper: it costs no memory.

@@ -82,6 +82,8 @@ pub struct ComponentRules {
     pub resurrect: Option<Located<ResurrectRule>>,
     /// Budget of recoveries, and what follows when it is used up.
     pub fault: Option<Located<FaultRule>>,
+    /// How much of another instance of the component itself is prepared; none: nothing is.
+    pub standby: Option<Located<Preload>>,
     /// What takes the component's place, in order.
     pub secondaries: Vec<Secondary>,
     /// How long a recovery may take.

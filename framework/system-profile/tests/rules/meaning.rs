@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use system_model::fault::FaultKind;
 use system_model::rules::{
-    Arming, ComponentSeverity, DecisionRule, DependencySeverity, Entity, IsolationTier,
+    Arming, ComponentSeverity, DecisionRule, DependencySeverity, Entity, IsolationTier, Preload,
     StopCategory, VotingMethod,
 };
 
@@ -78,6 +78,7 @@ fn rules_of_components() {
             <memory limit_kb='64' severity='stop' latch='true'><confirm count='3'/></memory>
             <resurrect><reset>on</reset><backup persist='true'>40</backup></resurrect>
             <fault window='10s' backoff='5' retry_max='2'><severity>global</severity></fault>
+            <standby preload='warm'/>
             <recovery deadline='20'/><isolation group='drive'>process</isolation>
             <actuator stop_category='1'><command port='command' safe_value='0'/></actuator>
             <adapt>adapt.xml</adapt><handle><reference>handle.xml</reference></handle>",
@@ -115,6 +116,7 @@ fn rules_of_components() {
         (2, Duration::from_secs(10))
     );
     assert_eq!(fault.backoff, milliseconds(5));
+    assert_eq!(motor.standby.as_ref().unwrap().value, Preload::Warm);
     let isolation = &motor.isolation.as_ref().unwrap().value;
     assert_eq!(
         (isolation.tier, isolation.group.as_deref()),

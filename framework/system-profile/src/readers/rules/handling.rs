@@ -110,14 +110,25 @@ fn report_endless(node: &Node<'_>, rule: &FaultRule) {
     );
 }
 
+/// How much is prepared, by name.
+const PRELOADS: [(&str, Preload); 3] = [
+    ("cold", Preload::Cold),
+    ("loaded", Preload::Loaded),
+    ("warm", Preload::Warm),
+];
+
+/// `standby`.
+pub(super) fn standby(node: &Node<'_>) -> Option<Located<Preload>> {
+    let node = node.child("standby")?;
+    let preload = required(&node, "preload").and_then(|value| value.choice(&PRELOADS));
+    node.finish();
+    Some(located(&node, preload?))
+}
+
 fn secondary(node: &Node<'_>) -> Option<DeclaredSecondary> {
-    let preload = node.attribute("preload").map(|value| {
-        value.choice(&[
-            ("cold", Preload::Cold),
-            ("loaded", Preload::Loaded),
-            ("warm", Preload::Warm),
-        ])
-    });
+    let preload = node
+        .attribute("preload")
+        .map(|value| value.choice(&PRELOADS));
     let reference = match node.element().children.is_empty() {
         true => Some(node.text()).filter(|text| !text.is_empty()),
         false => node.value("reference"),

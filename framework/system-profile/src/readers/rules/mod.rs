@@ -106,6 +106,7 @@ pub(crate) fn component_elements(node: &Node<'_>, name: &Located<String>) -> Dec
         ports: Vec::new(),
         resurrect: handling::resurrect(node),
         fault,
+        standby: handling::standby(node),
         secondaries: Vec::new(),
         recovery: handling::recovery(node),
         actuator,
