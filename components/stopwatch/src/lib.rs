@@ -67,10 +67,11 @@ impl Component for Stopwatch {
         Ok(())
     }
 
-    fn on_execute(&mut self, _context: &Context) -> Outcome {
+    fn on_execute(&mut self, context: &Context) -> Outcome {
         let arrived = self.ports.input.read();
         let now_ns = monotonic_ns();
-        self.record.cycle(now_ns);
+        let by_container = || u64::try_from(context.now().as_nanos()).unwrap_or(u64::MAX);
+        self.record.cycle(now_ns, by_container);
         if let Some(parcel) = arrived {
             self.record.passage(now_ns.saturating_sub(parcel.time));
         }
