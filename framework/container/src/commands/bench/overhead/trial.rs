@@ -1,8 +1,9 @@
 //! One run of `steadfast run` in a process of its own, as an integrator would start it, measured by
 //! its stopwatches and looked at from outside.
 
-use std::io::{self, Read as _};
-use std::path::Path;
+use std::fs::File;
+use std::io;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -102,7 +103,7 @@ fn attempt(chain: &Chain, pace: Pace, settles: bool) -> io::Result<Trial> {
     command.arg("--events").arg(folder.join("events.jsonl"));
     command.arg("--summary").arg(folder.join("summary.json"));
     let spawned_ns = monotonic_ns();
-    let running = Running::spawn(command)?;
+    let running = Running::spawn(command, folder.join("stderr.txt"))?;
     let footprint = settles.then(|| running.settled());
     running.finish(settles)?;
     refuse_faults(&read_json(&folder.join("summary.json"))?)?;
@@ -119,18 +120,21 @@ fn attempt(chain: &Chain, pace: Pace, settles: bool) -> io::Result<Trial> {
 /// A run that is under way; it ends with this at the latest.
 struct Running {
     child: Child,
+    /// What it complained of; a pipe that nobody reads would stop it.
+    complaints: PathBuf,
     deadline: Instant,
 }
 
 impl Running {
-    fn spawn(mut command: Command) -> io::Result<Self> {
+    fn spawn(mut command: Command, complaints: PathBuf) -> io::Result<Self> {
         let child = command
             .stdin(Stdio::null())
             .stdout(Stdio::null())
-            .stderr(Stdio::piped())
+            .stderr(File::create(&complaints)?)
             .spawn()?;
         Ok(Self {
             child,
+            complaints,
             deadline: Instant::now() + RUN_LIMIT,
         })
     }
@@ -171,10 +175,7 @@ impl Running {
         if status.success() {
             return Ok(());
         }
-        let mut said = String::new();
-        if let Some(mut stderr) = self.child.stderr.take() {
-            stderr.read_to_string(&mut said)?;
-        }
+        let said = std::fs::read_to_string(&self.complaints)?;
         Err(io::Error::other(format!(
             "a run ended with {status}:\n{said}"
         )))
