@@ -68,8 +68,8 @@ fn chains_memory_and_start_are_measured_on_real_runs() {
     for (row, (rules, copies)) in memory.iter().zip([
         ("none", 2.0),
         ("all", 2.0),
-        ("standby loaded", 4.0),
-        ("standby warm", 4.0),
+        ("standby loaded", 3.0),
+        ("standby warm", 3.0),
     ]) {
         assert_eq!(row["rules"], rules);
         assert_eq!(number(&row["threads"]), 1.0, "{row}");

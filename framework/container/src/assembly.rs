@@ -171,7 +171,7 @@ fn secondaries<'rules>(
     (0..specification.components.len())
         .map(|index| {
             let candidates = of(index).iter().filter_map(|rule| {
-                let library = libraries.load(&rule.specification)?;
+                let library = libraries.look_at(&rule.specification)?;
                 Some(secondary::Candidate { rule, library })
             });
             candidates.collect()

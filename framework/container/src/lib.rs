@@ -6,6 +6,7 @@
 
 pub mod assembly;
 pub mod backtrace;
+pub mod bare_wake;
 pub mod clock;
 pub mod component;
 pub mod control;

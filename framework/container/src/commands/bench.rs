@@ -3,11 +3,13 @@
 mod detection;
 mod load;
 mod machine;
+mod offspring;
 mod overhead;
 mod percentiles;
 mod processor_time;
 mod recovery;
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Subcommand};
@@ -33,6 +35,15 @@ enum Study {
     /// Measure the floor of `bench recovery` in this process.
     #[command(hide = true)]
     Floor(recovery::FloorArguments),
+    /// Answer wake-ups of the process that measures the floor, until killed.
+    #[command(hide = true)]
+    WakePartner {
+        /// Its shared memory.
+        memory: PathBuf,
+    },
+    /// Measure some rows of `bench recovery` in this process.
+    #[command(hide = true)]
+    Batch(recovery::BatchArguments),
 }
 
 /// Runs a study and writes its result to standard output.
@@ -43,5 +54,7 @@ pub fn run(arguments: &BenchArguments) -> ExitCode {
         Study::Recovery(arguments) => recovery::run(arguments),
         Study::Load(arguments) => load::run(arguments),
         Study::Floor(arguments) => recovery::run_floor(arguments),
+        Study::WakePartner { memory } => recovery::run_partner(memory),
+        Study::Batch(arguments) => recovery::run_batch(arguments),
     }
 }

@@ -6,9 +6,9 @@ use std::process::{Child, Command, ExitCode, Stdio};
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use rustix::process::{Signal, set_parent_process_death_signal};
 use rustix::thread::{CpuSet, sched_getaffinity, sched_setaffinity};
 
+use super::offspring::end_with_parent;
 use super::processor_time::ProcessorTime;
 
 /// Work and rest alternate within this time: as often as a control loop of 100 Hz does.
@@ -80,7 +80,7 @@ impl Drop for Load {
 
 /// Makes the load, in the process that was started for it, until that is killed.
 pub fn run(arguments: &LoadArguments) -> ExitCode {
-    if let Err(error) = set_parent_process_death_signal(Some(Signal::KILL)) {
+    if let Err(error) = end_with_parent() {
         eprintln!("steadfast bench load: it would outlive its parent: {error}");
         return ExitCode::FAILURE;
     }

@@ -6,6 +6,8 @@ use std::process::{Command, Stdio};
 
 use serde::de::DeserializeOwned;
 
+use super::application::Batch;
+use super::evaluation::Row;
 use super::floor::Operation;
 
 /// The operations of the floor, measured so many times each by a process of its own.
@@ -15,6 +17,17 @@ use super::floor::Operation;
 pub(super) fn measure_floor(library_path: &[PathBuf], n: u32) -> io::Result<Vec<Operation>> {
     let mut command = command("floor", library_path)?;
     output(command.args(["--n", &n.to_string()]))
+}
+
+/// The rows of a batch, measured by a process of its own in a folder that is removed afterwards.
+///
+/// # Errors
+/// If that process fails.
+pub(super) fn measure_batch(library_path: &[PathBuf], batch: &Batch) -> io::Result<Vec<Row>> {
+    let folder = tempfile::tempdir()?;
+    let mut command = command("batch", library_path)?;
+    command.arg("--folder").arg(folder.path());
+    output(command.arg(serde_json::to_string(batch)?))
 }
 
 fn command(study: &str, library_path: &[PathBuf]) -> io::Result<Command> {

@@ -4,19 +4,26 @@
 use std::io;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::process::{Child, Command, ExitCode, Stdio};
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use container::bare_wake::BareWake;
 use container::guard::BareTrap;
 use container::library::{LibrarySearch, LoadedLibrary};
 use serde::{Deserialize, Serialize};
 
-use super::real_time::{ask_for_real_time, lock_memory};
+use super::real_time::{PRIORITY, ask_for_real_time, lock_memory};
+use super::signalled::Signalled;
+use crate::commands::bench::offspring::{end_with_parent, end_within};
 use crate::commands::run::library_folders;
 
-/// From one operation to the next; in between others run, and each comes every 4 ms or so.
-const PAUSE: Duration = Duration::from_millis(1);
+/// From one operation to the next. In between others run, and each comes every 2 ms or so, about as
+/// often as a fault does in an application under test.
+const PAUSE: Duration = Duration::from_micros(300);
+
+/// Many times what the floor takes.
+const LIMIT: Duration = Duration::from_secs(300);
 
 /// What is loaded: the component under test.
 const LIBRARY: &str = "librelay.so";
@@ -60,14 +67,20 @@ pub fn run(arguments: &FloorArguments) -> ExitCode {
 }
 
 fn measure(arguments: &FloorArguments) -> io::Result<Vec<Operation>> {
+    end_with_parent()?;
+    end_within(LIMIT)?;
     let search = LibrarySearch::new(library_folders(&arguments.library_path));
     let library = search.find(LIBRARY).map_err(io::Error::other)?;
     let _without = lock_memory();
-    let _without = ask_for_real_time();
+    let _without = ask_for_real_time(PRIORITY);
     let mut traps = Traps::new()?;
-    let mut operations: [(&str, Timed); 2] = [
-        ("trap", Box::new(move || traps.time())),
+    let signalled = Signalled::start()?;
+    let partner = Partner::start()?;
+    let mut operations: [(&str, Timed); 4] = [
         ("dlopen", Box::new(move || time_load(&library))),
+        ("trap", Box::new(move || traps.time())),
+        ("signal", Box::new(move || signalled.time())),
+        ("process_wake", Box::new(move || partner.time())),
     ];
     let mut samples: Vec<Vec<u64>> = vec![Vec::new(); operations.len()];
     for _ in 0..arguments.n {
@@ -107,6 +120,53 @@ impl Traps {
         }
         self.bare = Some(bare.renewed());
         Ok(took)
+    }
+}
+
+/// Another process, woken and waking back.
+struct Partner {
+    wake: BareWake,
+    process: Child,
+}
+
+impl Partner {
+    fn start() -> io::Result<Self> {
+        let wake = BareWake::create()?;
+        let process = Command::new(std::env::current_exe()?)
+            .args(["bench", "wake-partner"])
+            .arg(wake.path())
+            .stdin(Stdio::null())
+            .spawn()?;
+        // Until it is there.
+        wake.round_trip()?;
+        Ok(Self { wake, process })
+    }
+
+    fn time(&self) -> io::Result<u64> {
+        let start = Instant::now();
+        self.wake.round_trip()?;
+        Ok(nanoseconds(start.elapsed()))
+    }
+}
+
+impl Drop for Partner {
+    fn drop(&mut self) {
+        // If it has ended already both fail, which is as well.
+        let _ended_already = self.process.kill();
+        let _ended_already = self.process.wait();
+    }
+}
+
+/// Answers wake-ups, in the process that was started for it, until it is killed.
+pub fn run_partner(path: &Path) -> ExitCode {
+    let _without = ask_for_real_time(PRIORITY);
+    let answered = end_with_parent().and_then(|()| BareWake::open(path)?.answer());
+    match answered {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("steadfast bench wake-partner: {error}");
+            ExitCode::from(2)
+        }
     }
 }
 

@@ -9,10 +9,10 @@ use thread_priority::{
 /// Of the executor of the component under test, and of whoever measures the floor.
 pub(super) const PRIORITY: u8 = 60;
 
-/// Gives the calling thread the scheduling of an executor under test, if that is permitted.
-pub(super) fn ask_for_real_time() -> bool {
+/// Gives the calling thread this real-time priority (`SCHED_FIFO`), if that is permitted.
+pub(super) fn ask_for_real_time(priority: u8) -> bool {
     let fifo = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
-    ThreadPriorityValue::try_from(PRIORITY).is_ok_and(|value| {
+    ThreadPriorityValue::try_from(priority).is_ok_and(|value| {
         let priority = ThreadPriority::Crossplatform(value);
         set_thread_priority_and_policy(thread_native_id(), priority, fifo).is_ok()
     })
