@@ -5,6 +5,7 @@ mod backtraces;
 mod bad_files;
 mod bad_libraries;
 mod bench;
+mod bench_overhead;
 mod c_component;
 mod clocks;
 mod control;

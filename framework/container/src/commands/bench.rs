@@ -4,6 +4,7 @@ mod detection;
 mod load;
 mod machine;
 mod offspring;
+mod overhead;
 mod percentiles;
 mod processor_time;
 mod recovery;
@@ -24,6 +25,8 @@ pub struct BenchArguments {
 enum Study {
     /// Motor driver fault: detection delay against false alarms for each decision rule.
     Detection(detection::DetectionArguments),
+    /// What fault tolerance costs while nothing fails: time, memory, start.
+    Overhead(overhead::OverheadArguments),
     /// How long it takes from a fault until its component works again, under load.
     Recovery(recovery::RecoveryArguments),
     /// Keep all processors busy for a share of their time, until killed.
@@ -47,6 +50,7 @@ enum Study {
 pub fn run(arguments: &BenchArguments) -> ExitCode {
     match &arguments.study {
         Study::Detection(arguments) => detection::run(arguments),
+        Study::Overhead(arguments) => overhead::run(arguments),
         Study::Recovery(arguments) => recovery::run(arguments),
         Study::Load(arguments) => load::run(arguments),
         Study::Floor(arguments) => recovery::run_floor(arguments),

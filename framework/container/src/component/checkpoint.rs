@@ -7,6 +7,8 @@
 
 use std::time::Duration;
 
+use crc32c::crc32c;
+
 use super::inheritance::Inheritance;
 use super::services::Services;
 use crate::persistence::CopySender;
@@ -14,9 +16,6 @@ use crate::persistence::CopySender;
 /// Copies that are kept. The oldest is two periods older than the newest: enough for a fault that
 /// is found some cycles after it began.
 const KEPT: usize = 3;
-
-/// The polynomial of iSCSI, for which processors have an instruction.
-const CHECKSUM: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISCSI);
 
 /// The copies of one component.
 #[derive(Debug)]
@@ -37,6 +36,7 @@ struct Copy {
     /// 0 while it is being written, or before the first time.
     sequence: u64,
     taken_ns: u64,
+    /// CRC-32C, for which processors have an instruction.
     checksum: u32,
     bytes: Vec<u8>,
 }
@@ -88,7 +88,7 @@ impl Checkpoints {
         if !memory.copy_to(&mut copy.bytes) {
             return;
         }
-        copy.checksum = CHECKSUM.checksum(&copy.bytes);
+        copy.checksum = crc32c(&copy.bytes);
         copy.taken_ns = now_ns;
         copy.sequence = next;
         self.sequence = next;
@@ -103,7 +103,7 @@ impl Checkpoints {
         self.copies[(sequence % KEPT as u64) as usize] = Copy {
             sequence,
             taken_ns: 0,
-            checksum: CHECKSUM.checksum(&bytes),
+            checksum: crc32c(&bytes),
             bytes,
         };
     }
@@ -127,7 +127,7 @@ impl Checkpoints {
         whole.sort_by_key(|copy| copy.sequence);
         let mut broken = 0;
         while let Some(copy) = whole.pop() {
-            if CHECKSUM.checksum(&copy.bytes) == copy.checksum {
+            if crc32c(&copy.bytes) == copy.checksum {
                 let certified = Certified {
                     sequence: copy.sequence,
                     taken_ns: copy.taken_ns,
@@ -154,7 +154,7 @@ impl Checkpoints {
         self.copies[(self.sequence % KEPT as u64) as usize] = Copy {
             sequence: self.sequence,
             taken_ns,
-            checksum: CHECKSUM.checksum(content),
+            checksum: crc32c(content),
             bytes: content.to_vec(),
         };
     }
@@ -212,7 +212,7 @@ mod tests {
         checkpoints.corrupt();
         assert_eq!(taken(&checkpoints, u64::MAX), (Some(30), 1));
         for copy in &mut checkpoints.copies {
-            copy.checksum = !CHECKSUM.checksum(&copy.bytes);
+            copy.checksum = !crc32c(&copy.bytes);
         }
         assert_eq!(taken(&checkpoints, u64::MAX), (None, 3));
     }

@@ -22,11 +22,7 @@ impl Percentiles {
     /// rank: the least that so many are not above). `None` without any.
     pub fn of(samples_ns: &mut [u64]) -> Option<Self> {
         samples_ns.sort_unstable();
-        let rank = |per_mille: usize| {
-            let rank = (samples_ns.len() * per_mille).div_ceil(1000);
-            let sample_ns = samples_ns.get(rank.saturating_sub(1));
-            sample_ns.map(|sample_ns| microseconds(*sample_ns))
-        };
+        let rank = |per_mille| nearest_rank(samples_ns, per_mille).map(microseconds);
         Some(Self {
             p50: rank(500)?,
             p99: rank(990)?,
@@ -47,6 +43,13 @@ impl fmt::Display for Percentiles {
         } = self;
         write!(formatter, "{p50:>10.1}{p99:>10.1}{p999:>10.1}{max:>10.1}")
     }
+}
+
+/// The least of times, sorted already, that so many thousandths of them are not above; `None` without
+/// any.
+pub fn nearest_rank(sorted: &[u64], per_mille: usize) -> Option<u64> {
+    let rank = (sorted.len() * per_mille).div_ceil(1000);
+    sorted.get(rank.saturating_sub(1)).copied()
 }
 
 /// Two decimals: below that a clock read is no measurement.
