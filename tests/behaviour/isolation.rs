@@ -4,6 +4,7 @@ mod bounds;
 mod critical;
 mod faults;
 mod groups;
+mod heap;
 mod outside;
 
 use tests::{Application, Member, Outcome};

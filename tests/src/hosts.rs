@@ -43,6 +43,8 @@ impl Host {
 struct Process {
     parent: i32,
     is_zombie: bool,
+    /// In ticks of the kernel's clock.
+    started: u64,
 }
 
 impl Process {
@@ -54,18 +56,28 @@ impl Process {
         let mut words = rest.split_whitespace();
         let is_zombie = words.next()? == "Z";
         let parent = words.next()?.parse().ok()?;
-        Some(Self { parent, is_zombie })
+        // Field 22 of the line; the parent was the fourth.
+        let started = words.nth(17)?.parse().ok()?;
+        Some(Self {
+            parent,
+            is_zombie,
+            started,
+        })
     }
 }
 
-/// All living children of a process.
+/// All living children of a process, the oldest first.
 pub(crate) fn hosts_of(container: u32) -> Vec<Host> {
     let is_child = |process: &Pid| {
         Process::read(*process)
             .is_some_and(|found| u32::try_from(found.parent) == Ok(container) && !found.is_zombie)
     };
-    let children = processes().into_iter().filter(is_child);
-    let with_threads = children.map(|process| Host {
+    let mut children: Vec<Pid> = processes().into_iter().filter(is_child).collect();
+    children.sort_by_key(|process| {
+        let started = Process::read(*process).map(|found| found.started);
+        (started, process.as_raw_nonzero())
+    });
+    let with_threads = children.into_iter().map(|process| Host {
         process,
         threads: threads(process),
     });

@@ -48,7 +48,7 @@ fn each_is_recovered_and_nobody_else_misses_anything() {
         assert!(outcome.cycles("faulty") >= CYCLES - 1, "{faulty}");
         for healthy in ["counter", "recorder", "sink", "herald", "asker"] {
             let component = outcome.component(healthy);
-            assert_eq!(component["isolation"], "process", "{component}");
+            assert_eq!(component["tier"], "process", "{component}");
             assert_eq!(component["state"], "ACTIVE", "{misbehaviour}: {component}");
             assert_eq!(component["faults"], 0, "{misbehaviour}: {component}");
             assert_eq!(component["cycles"], CYCLES, "{misbehaviour}: {component}");
@@ -91,8 +91,8 @@ fn is_same(one: &Outcome, other: &Outcome) {
 fn events_of_healthy_components_are_the_same_in_both_tiers() {
     let guarded = all_kinds().simulate("1s").ended_well();
     let hosted = all_kinds().in_hosts().simulate("1s").ended_well();
-    assert_eq!(guarded.component("echo")["isolation"], "guarded");
-    assert_eq!(hosted.component("echo")["isolation"], "process");
+    assert_eq!(guarded.component("echo")["tier"], "guarded");
+    assert_eq!(hosted.component("echo")["tier"], "process");
     assert_eq!(hosted.cycles("echo"), CYCLES);
     is_same(&guarded, &hosted);
 }
@@ -110,13 +110,20 @@ fn the_same_seed_gives_the_same_events_whatever_fails() {
         "stack_overflow",
         "hang",
     ];
-    let victims = ["echo", "counter", "listener", "adder", "asker", "recorder"];
+    let victims = ["echo", "counter", "listener", "diary", "asker", "recorder"];
     let injections: String = (0..)
         .zip(faults)
         .map(|(number, fault)| {
             let victim = victims[number % victims.len()];
             let at_ms = 100 + 70 * number;
-            format!("<inject at='{at_ms}ms' component='{victim}' fault='{fault}'/>")
+            let callback = match victim {
+                "listener" => "onEvent",
+                _ => "onExecute",
+            };
+            format!(
+                "<inject at='{at_ms}ms' component='{victim}' callback='{callback}' \
+                 fault='{fault}'/>"
+            )
         })
         .collect();
     let run = || {

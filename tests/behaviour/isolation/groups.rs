@@ -1,40 +1,27 @@
 //! Components that share a process.
 
-use std::collections::BTreeSet;
-
 use rustix::process::Signal;
-use tests::{Application, Member, Watched};
+use tests::{Application, Member};
 
 use super::{healthy, healthy_missed_nothing, recovered};
 
-/// Two in one process, and the healthy chain guarded.
-fn application() -> Application {
-    let group = |name: &str| {
+/// Two in one process, and the healthy chain guarded; with further rules for the first of the two.
+fn application(rules: &str) -> Application {
+    let group = |(name, rules): (&str, &str)| {
         format!(
-            "<component name='{name}'><isolation group='twins'>process</isolation>\
+            "<component name='{name}'><isolation group='twins'>process</isolation>{rules}\
              </component>"
         )
     };
     healthy()
         .with(&Member::new("first", "counter"))
         .with(&Member::new("second", "diary"))
-        .rules(&["first", "second"].map(group).concat())
-}
-
-fn hosts(run: &Watched) -> BTreeSet<i32> {
-    let hosts = run.hosts().into_iter();
-    hosts.map(|host| host.id()).collect()
-}
-
-fn hosts_of(run: &Watched, component: &str) -> BTreeSet<i32> {
-    let hosts = run.hosts().into_iter();
-    let own = hosts.filter(|host| host.runs(component));
-    own.map(|host| host.id()).collect()
+        .rules(&[("first", rules), ("second", "")].map(group).concat())
 }
 
 #[test]
 fn a_group_is_one_process_and_dies_and_comes_back_together() {
-    let application = application();
+    let application = application("");
     let run = application.start(&[]);
     application.wait_until(|events| events.matches("got ").count() > 5);
     let first = run.host_of("first");
@@ -56,50 +43,39 @@ fn a_group_is_one_process_and_dies_and_comes_back_together() {
     healthy_missed_nothing(&outcome, "a group died");
 }
 
-/// Both kinds of standby of a group live in a process that is not the group's own.
+/// Who stands by lives in a process that is not the group's own, and takes over when that dies.
 #[test]
 fn who_stands_by_is_not_where_that_is_for_which_it_stands_by() {
-    let application = application()
-        .with_profile(&Member::new("spare", "counter"))
-        .rules(
-            "<component name='first'><fault><retry_max>0</retry_max><secondary preload='warm'>\
-             <reference>spare.xml</reference></secondary></fault></component>",
-        );
+    let application = application(
+        "<fault><retry_max>0</retry_max><secondary preload='warm'>\
+         <reference>spare.xml</reference></secondary></fault>",
+    )
+    .with_profile(&Member::new("spare", "counter"));
     let run = application.start(&[]);
     application.wait_until(|events| events.matches("got ").count() > 5);
-    let spare = run.host_of("spare");
-    assert!(!hosts_of(&run, "second").is_empty());
-    let shared = spare.runs("second") && hosts_of(&run, "second").len() == 1;
-    assert!(!shared, "the spare one would die with the group");
-    let present = run
-        .hosts()
-        .into_iter()
-        .find(|host| !host.runs("spare") && host.runs("second"));
-    let present = present.expect("the group has a process");
-    assert!(present.runs("first"), "{present:?}");
+    let hosts = run.hosts();
+    let [present, standby] = hosts.as_slice() else {
+        panic!("the group has one process, and who stands by another: {hosts:?}");
+    };
+    assert!(present.runs("first") && present.runs("second"), "{hosts:?}");
     assert!(present.signal(Signal::KILL));
     application
         .wait_until(|events| recovered(events, "first", 1) && recovered(events, "second", 1));
-    assert!(!hosts(&run).contains(&present.id()));
+    assert!(!standby.is_gone(), "{standby:?} took over");
     let outcome = application.interrupt(run).ended_well();
     let replaced = "replace first by spare: done".to_owned();
-    assert!(
-        outcome.actions().contains(&replaced),
-        "{:?}",
-        outcome.actions()
-    );
+    let actions = outcome.actions();
+    assert!(actions.contains(&replaced), "{actions:?}");
     let notes = outcome.notes();
-    let by_spare = notes
-        .iter()
-        .filter(|note| note.contains("by a warm standby"));
-    assert!(by_spare.count() >= 1, "{notes:?}");
+    let by_standby = |note: &String| note.contains("by a warm standby");
+    assert!(notes.iter().any(by_standby), "{notes:?}");
     healthy_missed_nothing(&outcome, "a group died");
 }
 
 /// A panic is caught: who else lives in that process does not notice.
 #[test]
 fn a_panic_of_one_leaves_the_other_of_its_group() {
-    let outcome = application()
+    let outcome = application("")
         .injections("<inject at='500ms' component='first' fault='panic'/>")
         .simulate("1s")
         .ended_well();
@@ -108,6 +84,6 @@ fn a_panic_of_one_leaves_the_other_of_its_group() {
     let other = outcome.component("second");
     assert_eq!(other["faults"], 0, "{other}");
     assert_eq!(other["cycles"], 100, "{other}");
-    assert_eq!(other["isolation"], "process", "{other}");
+    assert_eq!(other["tier"], "process", "{other}");
     healthy_missed_nothing(&outcome, "a panic in a group");
 }
