@@ -1,11 +1,14 @@
 //! Components in processes of their own: what dies there, dies alone.
 
 mod bounds;
+mod chance;
 mod critical;
 mod faults;
 mod groups;
 mod heap;
 mod outside;
+mod residue;
+mod sabotage;
 
 use tests::{Application, Member, Outcome};
 
