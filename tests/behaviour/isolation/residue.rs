@@ -26,7 +26,7 @@ const LIMIT: Duration = Duration::from_secs(30);
 fn application() -> Application {
     let expendable = |name: &&str| {
         format!(
-            "<component name='{name}'><fault window='1s' backoff='0'><retry_max>1000</retry_max>\
+            "<component name='{name}'><fault window='1s' backoff='0'><retry_max>100</retry_max>\
              </fault></component>"
         )
     };
@@ -101,8 +101,8 @@ fn two_hundred_random_kills_leave_nothing() {
             kills += 1;
         }
         let finished = run.wait(LIMIT);
-        // Refused, or killed: one way or the other it is over.
-        let refused = finished.stderr.contains("its host process");
+        // Killed; or refused, because what it had started to load or run something in was killed.
+        let refused = finished.code.is_some_and(|code| (1..=5).contains(&code));
         assert!(finished.code.is_none() || refused, "{finished}");
         nothing_lives(&application);
     }
