@@ -102,7 +102,7 @@ fn two_hundred_random_kills_leave_nothing() {
         }
         let finished = run.wait(LIMIT);
         // Killed; or refused, because what it had started to load or run something in was killed.
-        let refused = finished.code.is_some_and(|code| (1..=5).contains(&code));
+        let refused = finished.code.is_some_and(|code| (1..=6).contains(&code));
         assert!(finished.code.is_none() || refused, "{finished}");
         nothing_lives(&application);
     }
