@@ -21,11 +21,11 @@ pub(super) fn end_process(component: u32) -> ! {
     let mut text = [0_u8; 400];
     let mut rest = &mut text[..];
     // It fits; else its beginning is written.
-    let _cut = write!(
+    let _cut = writeln!(
         rest,
         "steadfast: component {} of this run met a damaged heap, whose lock is held for ever now; \
          the container ends, because memory of all components may be damaged. \
-         <isolation>process</isolation> would have contained this.\n",
+         <isolation>process</isolation> would have contained this.",
         component + 1
     );
     let left = rest.len();
@@ -35,8 +35,8 @@ pub(super) fn end_process(component: u32) -> ! {
     // SAFETY: the default action ends the process.
     unsafe { libc::signal(libc::SIGABRT, libc::SIG_DFL) };
     loop {
-        // SAFETY: sends a signal to the process itself.
-        unsafe { libc::kill(libc::getpid(), libc::SIGABRT) };
+        // SAFETY: sends a signal to this very thread.
+        unsafe { libc::raise(libc::SIGABRT) };
         // SAFETY: no precondition.
         unsafe { libc::pause() };
     }

@@ -28,7 +28,7 @@ impl Misbehaviour for CorruptsHeap {
             }
             for offset in size..size + TOO_FAR {
                 // SAFETY: none; this is behind the block.
-                unsafe { black_box(block).add(offset).write_volatile(0xA5) };
+                unsafe { black_box(block.wrapping_add(offset)).write_volatile(0xA5) };
             }
         }
         let mut kept = Vec::new();
