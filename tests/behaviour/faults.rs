@@ -4,7 +4,7 @@
 use tests::{Application, Member, Outcome};
 
 /// Every misbehaviour with the kind of fault that it is.
-const MISBEHAVIOURS: [(&str, &str); 13] = [
+pub(super) const MISBEHAVIOURS: [(&str, &str); 13] = [
     ("panics", "panic"),
     ("returns_error", "error_return"),
     ("writes_null", "segfault"),

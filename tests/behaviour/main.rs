@@ -15,6 +15,7 @@ mod execution;
 mod faults;
 mod hangs;
 mod injections;
+mod isolation;
 mod life_cycle;
 mod manager_ports;
 mod memory;

@@ -206,6 +206,16 @@ impl Application {
         enough: impl Fn(&str) -> bool,
     ) -> Outcome {
         let child = self.start(arguments);
+        self.wait_until(enough);
+        child.signal(signal);
+        self.outcome(child.wait(STOP_LIMIT))
+    }
+
+    /// Waits until `enough` holds of the event file of the run that is under way.
+    ///
+    /// # Panics
+    /// If it never holds.
+    pub fn wait_until(&self, enough: impl Fn(&str) -> bool) {
         let events = self.folder().join(EVENTS);
         let mut text = String::new();
         let happened = until(RUN_LIMIT, || {
@@ -213,8 +223,6 @@ impl Application {
             enough(&text)
         });
         assert!(happened, "what was waited for did not happen: {text}");
-        child.signal(signal);
-        self.outcome(child.wait(STOP_LIMIT))
     }
 
     /// Runs these files in one container.

@@ -6,6 +6,7 @@
 mod application;
 mod assembled;
 mod build;
+mod hosts;
 mod member;
 mod operator;
 mod outcome;
@@ -16,6 +17,7 @@ mod watchdog;
 pub use application::Application;
 pub use assembled::{assembled, environment};
 pub use build::{artifacts, c_component};
+pub use hosts::{Host, processes_that_mention, zombies};
 pub use member::Member;
 pub use operator::Operator;
 pub use outcome::Outcome;

@@ -10,8 +10,13 @@ use std::time::{Duration, Instant};
 
 use rustix::process::{Pid, Signal, kill_process};
 
+use crate::hosts::{Host, hosts_of};
+
 /// How often a child is looked at.
 const POLL_PERIOD: Duration = Duration::from_millis(2);
+
+/// A host starts within milliseconds; a busy machine gets more.
+const HOST_LIMIT: Duration = Duration::from_secs(30);
 
 /// The root of the repository.
 pub fn repository() -> &'static Path {
@@ -95,6 +100,25 @@ impl Watched {
     /// If the child is gone.
     pub fn signal(&self, signal: Signal) {
         kill_process(self.id(), signal).expect("the child runs");
+    }
+
+    /// The processes that it runs components in.
+    pub fn hosts(&self) -> Vec<Host> {
+        hosts_of(self.child.id())
+    }
+
+    /// The one that a component runs in, once there is one.
+    ///
+    /// # Panics
+    /// If there is none in time.
+    pub fn host_of(&self, component: &str) -> Host {
+        let mut found = None;
+        let is_there = || {
+            found = self.hosts().into_iter().find(|host| host.runs(component));
+            found.is_some()
+        };
+        assert!(until(HOST_LIMIT, is_there), "no host runs '{component}'");
+        found.expect("it was just found")
     }
 
     /// Whether it still runs.

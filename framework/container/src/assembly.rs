@@ -155,6 +155,7 @@ pub fn assemble_together(
         return Err(problems);
     }
     let executors = executors::group(specification, firsts, &components);
+    connect::introduce(&components, &executors);
     connect::connect(specification, &primaries, &components, &executors);
     Ok(Assembly {
         components,

@@ -24,6 +24,7 @@ use crate::event_log::Event;
 use crate::guard::loss::{Loss, LostThread};
 use crate::guard::{Callback, Ending};
 use crate::status::ComponentStatus;
+use crate::wake::Wake;
 use limits::Limits;
 
 pub(crate) use cell::mark_lost;
@@ -60,6 +61,8 @@ pub struct Component {
     nominal: CallLimits,
     /// Where it was when it was taken off.
     scene: Option<Scene>,
+    /// What wakes its executor.
+    executor: Option<Arc<Wake>>,
 }
 
 /// Why an operation did not bring the component where it should be.
@@ -96,6 +99,7 @@ impl Component {
             nominal: CallLimits::default(),
             counts_allocations: false,
             scene: None,
+            executor: None,
         }
     }
 
@@ -111,6 +115,15 @@ impl Component {
     pub fn count_allocations(&mut self) {
         self.counts_allocations = true;
         self.instance.count_allocations();
+    }
+
+    /// Whose thread calls it from now on. In simulated time nobody is woken by what happens
+    /// outside of it.
+    pub fn run_by(&mut self, executor: Arc<Wake>) {
+        if !self.services.environment().clock.is_simulated() {
+            self.instance.run_by(&executor);
+        }
+        self.executor = Some(executor);
     }
 
     /// Instance name.

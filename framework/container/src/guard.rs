@@ -18,6 +18,7 @@ mod code;
 mod copy;
 mod foreign;
 mod hang;
+mod heap;
 mod host;
 mod injection;
 mod interpose;

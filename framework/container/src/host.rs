@@ -13,6 +13,7 @@
 mod answer;
 mod channel;
 mod critical;
+mod deadline;
 mod ending;
 mod filter;
 mod group;

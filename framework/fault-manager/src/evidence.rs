@@ -26,6 +26,10 @@ pub enum Evidence {
         backtrace: Vec<String>,
         /// Whether the thread was lost with the component.
         thread_lost: bool,
+        /// What it may have done to others in the same process, and which isolation tier would have
+        /// contained it.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        damage: Option<&'static str>,
     },
     /// A value of a port and its limits.
     Value {

@@ -46,6 +46,17 @@ pub(super) fn connect(
     }
 }
 
+/// Tells every component who calls it.
+pub(super) fn introduce(components: &[Arc<ComponentCell>], executors: &[Executor]) {
+    for (index, cell) in components.iter().enumerate() {
+        if let Some((wake, _)) = wake_of(executors, index)
+            && let Some(mut component) = cell.enter(SETUP_TOKEN, std::time::Duration::ZERO)
+        {
+            component.run_by(wake);
+        }
+    }
+}
+
 /// What wakes the executor of a component, and whether data do.
 fn wake_of(executors: &[Executor], component: usize) -> Option<(Arc<Wake>, ExecutionKind)> {
     executors

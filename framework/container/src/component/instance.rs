@@ -1,10 +1,12 @@
 //! An instance of a component, wherever it runs: behind the guard in this process, or in a host.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::guard::loss::Loss;
 use crate::guard::{self, CallLimit, Callback, Ending, Guarded, HostServices, Misbehaviour, Trap};
 use crate::host::{Hosted, RemoteScene};
+use crate::wake::Wake;
 
 /// An instance, by its isolation tier.
 pub enum Instance {
@@ -62,6 +64,18 @@ impl Instance {
         match self {
             Self::Guarded(guarded) => guarded.is_alive(),
             Self::Hosted(hosted) => hosted.is_alive(),
+        }
+    }
+
+    /// Whether it runs in the container's own process.
+    pub fn is_guarded(&self) -> bool {
+        matches!(self, Self::Guarded(_))
+    }
+
+    /// Whose thread calls it from now on: it is woken by what ends the instance while nobody does.
+    pub fn run_by(&self, executor: &Arc<Wake>) {
+        if let Self::Hosted(hosted) = self {
+            hosted.run_by(executor);
         }
     }
 

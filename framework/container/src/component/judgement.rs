@@ -138,7 +138,7 @@ impl Component {
                 now.saturating_sub(fault.lasted)
             },
             runs: self.is_active(),
-            evidence: exception(fault, backtrace, simulated),
+            evidence: exception(fault, backtrace, simulated, self.instance.is_guarded()),
         };
         let observation = Observation::Symptom(Box::new(symptom));
         let observations = &environment.observations;
@@ -159,7 +159,7 @@ impl Component {
 }
 
 /// A fault as evidence. What differs from run to run is left out of simulated runs.
-pub(super) fn exception(fault: &Fault, backtrace: Vec<String>, simulated: bool) -> Evidence {
+fn exception(fault: &Fault, backtrace: Vec<String>, simulated: bool, guarded: bool) -> Evidence {
     let signal = fault.signal.as_ref();
     Evidence::Exception {
         callback: fault.callback.to_owned(),
@@ -174,6 +174,24 @@ pub(super) fn exception(fault: &Fault, backtrace: Vec<String>, simulated: bool) 
             .map(|signal| format!("{:#x}", signal.address)),
         backtrace,
         thread_lost: fault.thread_lost,
+        damage: if guarded { damage(fault) } else { None },
+    }
+}
+
+/// What a fault may have done to others in the same process.
+fn damage(fault: &Fault) -> Option<&'static str> {
+    match (fault.kind, fault.thread_lost) {
+        // The C library aborts when it finds its heap damaged; a wild pointer that was caught may
+        // not have been the first.
+        (FaultKind::Segfault | FaultKind::BusError, _) | (FaultKind::Abort, true) => Some(
+            "memory of other components may be damaged; \
+             <isolation>process</isolation> would have contained this",
+        ),
+        (_, true) => Some(
+            "a lock of the C library may be held for ever; \
+             <isolation>process</isolation> would have contained this",
+        ),
+        _ => None,
     }
 }
 

@@ -108,6 +108,9 @@ impl Component {
         self.services.take_over(&mut predecessor.services);
         self.checkpoints = predecessor.checkpoints.take();
         self.status = Arc::clone(&predecessor.status);
+        if let Some(executor) = predecessor.executor.take() {
+            self.run_by(executor);
+        }
         self.enter_incarnation(incarnation);
     }
 

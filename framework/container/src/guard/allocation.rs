@@ -8,6 +8,8 @@
 //!
 //! An executable that loads components must export these symbols; see `exported_symbols.rs`.
 
+use std::cell::Cell;
+
 use libc::{c_int, c_void, size_t};
 
 use super::host::HostSide;
@@ -21,6 +23,29 @@ unsafe extern "C" {
     fn __libc_realloc(memory: *mut c_void, size: size_t) -> *mut c_void;
     fn __libc_free(memory: *mut c_void);
     fn __libc_memalign(alignment: size_t, size: size_t) -> *mut c_void;
+}
+
+thread_local! {
+    // Const-initialised and without a destructor, so that the trap handler may read it.
+    static INSIDE: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Whether a component of this thread is inside the allocator: a fault there means that the heap is
+/// damaged, and that its lock may be held.
+pub(super) fn is_inside() -> bool {
+    INSIDE.get()
+}
+
+/// Lets the C library work, with a mark of that while a component waits for it.
+#[inline]
+fn inside<Answer>(work: impl FnOnce() -> Answer) -> Answer {
+    if trap::current().is_null() {
+        return work();
+    }
+    INSIDE.set(true);
+    let answer = work();
+    INSIDE.set(false);
+    answer
 }
 
 /// The host side of the component that is to be charged: the one on whose stack the caller runs,
@@ -53,21 +78,21 @@ fn charge(memory: *mut c_void) -> *mut c_void {
 #[unsafe(no_mangle)]
 pub extern "C" fn malloc(size: size_t) -> *mut c_void {
     // SAFETY: any size may be asked for.
-    charge(unsafe { __libc_malloc(size) })
+    charge(inside(|| unsafe { __libc_malloc(size) }))
 }
 
 /// As `calloc(3)`.
 #[unsafe(no_mangle)]
 pub extern "C" fn calloc(count: size_t, size: size_t) -> *mut c_void {
     // SAFETY: any size may be asked for.
-    charge(unsafe { __libc_calloc(count, size) })
+    charge(inside(|| unsafe { __libc_calloc(count, size) }))
 }
 
 /// As `memalign(3)`.
 #[unsafe(no_mangle)]
 pub extern "C" fn memalign(alignment: size_t, size: size_t) -> *mut c_void {
     // SAFETY: the C library makes do with any alignment.
-    charge(unsafe { __libc_memalign(alignment, size) })
+    charge(inside(|| unsafe { __libc_memalign(alignment, size) }))
 }
 
 /// As `aligned_alloc(3)` of the C library, where it is another name for `memalign`.
@@ -106,11 +131,11 @@ pub unsafe extern "C" fn posix_memalign(
 pub unsafe extern "C" fn realloc(memory: *mut c_void, size: size_t) -> *mut c_void {
     let Some(side) = charged() else {
         // SAFETY: by this function's contract.
-        return unsafe { __libc_realloc(memory, size) };
+        return inside(|| unsafe { __libc_realloc(memory, size) });
     };
     let before = usable(memory);
     // SAFETY: by this function's contract.
-    let moved = unsafe { __libc_realloc(memory, size) };
+    let moved = inside(|| unsafe { __libc_realloc(memory, size) });
     // Null for a size means that nothing has changed; null for no size, that it was freed.
     if !moved.is_null() || size == 0 {
         side.charge(before, usable(moved));
@@ -128,7 +153,7 @@ pub unsafe extern "C" fn free(memory: *mut c_void) {
         side.charge(usable(memory), 0);
     }
     // SAFETY: by this function's contract.
-    unsafe { __libc_free(memory) };
+    inside(|| unsafe { __libc_free(memory) });
 }
 
 #[cfg(test)]

@@ -66,6 +66,16 @@ impl Loss {
 
     /// Publishes the loss of this thread and stops for ever. Called inside the handler.
     pub(super) fn publish_and_park(&self, frame: &Frame, trap: Trap) -> ! {
+        self.publish(frame, trap);
+        loop {
+            // SAFETY: no precondition; returns after a signal was handled.
+            unsafe { libc::pause() };
+        }
+    }
+
+    /// Publishes the loss of this thread, which then leaves its lane alone. Called inside the
+    /// handler.
+    pub(super) fn publish(&self, frame: &Frame, trap: Trap) {
         let mut lost = LostThread {
             trap,
             components: [0; DEEPEST_CALL_CHAIN],
@@ -84,10 +94,6 @@ impl Loss {
         unsafe { *self.record.get() = Some(lost) };
         self.state.store(PUBLISHED, Ordering::Release);
         wake_spare();
-        loop {
-            // SAFETY: no precondition; returns after a signal was handled.
-            unsafe { libc::pause() };
-        }
     }
 }
 

@@ -13,9 +13,11 @@ use std::time::Duration;
 
 use corosensei::trap::CoroutineTrapHandler;
 
+use super::allocation;
 use super::code::CodeRange;
 use super::copy;
 use super::hang;
+use super::heap;
 use super::injection;
 use super::loss::Loss;
 use super::registers::{self, Registers};
@@ -177,7 +179,12 @@ extern "C" fn handle(
             } else {
                 // In the C library or the loader: a lock may be held. The thread stops here for ever.
                 // SAFETY: the loss outlives every frame that names it (contract of `Frame`).
-                unsafe { &*frame.loss }.publish_and_park(frame, trap);
+                let loss = unsafe { &*frame.loss };
+                if allocation::is_inside() {
+                    loss.publish(frame, trap);
+                    heap::end_process(frame.component);
+                }
+                loss.publish_and_park(frame, trap);
             }
         }
         _ if sent_by_others(information) => fail_container(signal, information),

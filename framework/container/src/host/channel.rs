@@ -11,8 +11,9 @@ use std::time::Duration;
 use rustix::fs::{MemfdFlags, SealFlags};
 use rustix::mm::{MapFlags, ProtFlags};
 use rustix::thread::futex;
-use rustix::time::{ClockId, clock_gettime};
+use rustix::time::ClockId;
 
+use super::deadline;
 use super::layout::{Area, Layout};
 use super::message::Words;
 use crate::guard::{ForeignBytesMut, ForeignText};
@@ -203,7 +204,7 @@ impl Channel {
     /// In the container: sleeps until it is the container's turn, the host is dead, or `limit` has
     /// passed.
     pub(super) fn wait_for_host(&self, limit: Duration) -> Waited {
-        let deadline = until(limit);
+        let deadline = deadline::after(limit);
         loop {
             if self.turn().load(Ordering::Acquire) == CONTAINER {
                 return Waited::Turn;
@@ -242,6 +243,11 @@ impl Channel {
         self.base.wrapping_add(LIFE_LINK).cast()
     }
 
+    /// In the container: whether nobody waits for the host.
+    pub(super) fn is_idle(&self) -> bool {
+        self.turn().load(Ordering::Acquire) == CONTAINER
+    }
+
     /// In the container: the host was reaped.
     pub(super) fn mark_dead(&self) {
         self.life().fetch_or(OWNER_DIED, Ordering::AcqRel);
@@ -260,8 +266,7 @@ impl Channel {
             tv_nsec: 1_000_000,
         };
         let _ = futex::wait(self.turn(), futex::Flags::empty(), HOST, Some(&MOMENT));
-        let now = clock_gettime(ClockId::Monotonic);
-        (now.tv_sec, now.tv_nsec) < (deadline.tv_sec, deadline.tv_nsec)
+        !deadline::has_passed(deadline)
     }
 
     /// A word at a multiple of eight bytes.
@@ -307,18 +312,4 @@ fn waiter(word: &AtomicU32, value: u32) -> futex::Wait {
     waiter.uaddr = futex::WaitPtr::new(word.as_ptr().cast());
     waiter.flags = futex::WaitFlags::SIZE_U32;
     waiter
-}
-
-/// The moment `limit` from now on the monotonic clock; the end of time if that is later.
-fn until(limit: Duration) -> futex::Timespec {
-    let now = clock_gettime(ClockId::Monotonic);
-    let seconds = i64::try_from(limit.as_secs()).unwrap_or(i64::MAX);
-    let nanoseconds = now.tv_nsec + i64::from(limit.subsec_nanos());
-    futex::Timespec {
-        tv_sec: now
-            .tv_sec
-            .saturating_add(seconds)
-            .saturating_add(nanoseconds / 1_000_000_000),
-        tv_nsec: nanoseconds % 1_000_000_000,
-    }
 }

@@ -3,7 +3,7 @@
 use std::io;
 use std::os::fd::{AsFd as _, OwnedFd};
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::thread::ThreadId;
 use std::time::{Duration, Instant};
 
@@ -30,6 +30,7 @@ use crate::guard::{
     Misbehaviour, Registers, Trap,
 };
 use crate::library::PortDescription;
+use crate::wake::Wake;
 
 /// Loading a library takes milliseconds, starting a process a few; a host that takes longer hangs.
 const START_LIMIT: Duration = Duration::from_secs(10);
@@ -42,6 +43,8 @@ pub struct Hosted {
     process: Option<Arc<HostProcess>>,
     /// What is left of it then.
     remains: Option<Arc<HostProcess>>,
+    /// Woken when the host dies while nobody calls the instance.
+    executor: Arc<OnceLock<Arc<Wake>>>,
     /// Where devices are handed to the host.
     devices: OwnedFd,
     /// The host's thread that runs the instance.
@@ -109,8 +112,9 @@ impl Hosted {
             counts_allocations: component.counts_allocations,
             limits: component.limits,
         };
+        let executor = Arc::default();
         process
-            .run(&setup, &channel, far.as_fd())
+            .run(&setup, &channel, far.as_fd(), &executor)
             .map_err(in_words)?;
         drop(far);
         let thread = wait_until_loaded(&channel, &layout, &process)?;
@@ -120,6 +124,7 @@ impl Hosted {
             layout,
             process: Some(process),
             remains: None,
+            executor,
             devices,
             thread,
             number: 0,
@@ -136,6 +141,14 @@ impl Hosted {
     /// Whether the instance can still be called.
     pub fn is_alive(&self) -> bool {
         self.process.is_some()
+    }
+
+    /// Whose thread calls it from now on: it is woken when the host dies while nobody does.
+    pub fn run_by(&self, executor: &Arc<Wake>) {
+        let _first = self.executor.set(Arc::clone(executor));
+        if self.has_lost_host() {
+            executor.wake();
+        }
     }
 
     /// Whether its host has died by itself while it should live.

@@ -19,6 +19,7 @@ use super::HOST_COMMAND;
 use super::channel::Channel;
 use super::setup::Setup;
 use super::socket;
+use crate::wake::Wake;
 
 /// How often a wait for its end looks.
 const LOOK: Duration = Duration::from_millis(1);
@@ -39,7 +40,32 @@ struct Life {
     /// Whether the container ended it.
     killed: AtomicBool,
     status: OnceLock<ExitStatus>,
-    channels: Mutex<Vec<Weak<Channel>>>,
+    tenants: Mutex<Vec<Tenant>>,
+}
+
+/// Whom the end of the process concerns.
+#[derive(Debug)]
+struct Tenant {
+    channel: Weak<Channel>,
+    executor: Arc<OnceLock<Arc<Wake>>>,
+}
+
+impl Tenant {
+    /// The process is dead. Whoever waits for it sees that by the channel; if nobody does, and it
+    /// has ended by itself, the executor is to look.
+    fn learn_of_death(&self, by_itself: bool) {
+        let Some(channel) = self.channel.upgrade() else {
+            return;
+        };
+        let is_idle = channel.is_idle();
+        channel.mark_dead();
+        if let Some(executor) = self.executor.get()
+            && by_itself
+            && is_idle
+        {
+            executor.wake();
+        }
+    }
 }
 
 impl HostProcess {
@@ -58,7 +84,7 @@ impl HostProcess {
         Ok(Self { control, life })
     }
 
-    /// Lets it run an instance.
+    /// Lets it run an instance; `executor` is woken if the process ends while nobody waits for it.
     ///
     /// # Errors
     /// If it cannot be told: it is dead.
@@ -67,8 +93,12 @@ impl HostProcess {
         setup: &Setup,
         channel: &Arc<Channel>,
         devices: BorrowedFd<'_>,
+        executor: &Arc<OnceLock<Arc<Wake>>>,
     ) -> io::Result<()> {
-        self.life.channels().push(Arc::downgrade(channel));
+        self.life.tenants().push(Tenant {
+            channel: Arc::downgrade(channel),
+            executor: Arc::clone(executor),
+        });
         let message = serde_json::to_vec(setup)?;
         socket::send(self.control.as_fd(), &message, &[channel.memory(), devices])?;
         if self.life.status.get().is_some() {
@@ -131,8 +161,8 @@ impl Life {
         self.reaped.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn channels(&self) -> MutexGuard<'_, Vec<Weak<Channel>>> {
-        self.channels.lock().unwrap_or_else(PoisonError::into_inner)
+    fn tenants(&self) -> MutexGuard<'_, Vec<Tenant>> {
+        self.tenants.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -154,12 +184,13 @@ fn attend(executable: &PathBuf, far: OwnedFd, tell: &Sender<io::Result<Arc<Life>
         reaped: Mutex::new(false),
         killed: AtomicBool::new(false),
         status: OnceLock::new(),
-        channels: Mutex::default(),
+        tenants: Mutex::default(),
     });
     let _nobody_waits = tell.send(Ok(Arc::clone(&life)));
     drop(reap(&mut child, &life));
-    for channel in life.channels().iter().filter_map(Weak::upgrade) {
-        channel.mark_dead();
+    let by_itself = !life.killed.load(Ordering::Acquire);
+    for tenant in life.tenants().iter() {
+        tenant.learn_of_death(by_itself);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use container::event_log::Event;
 use container::outer_supervision::ContainerRestart;
-use fault_manager::{Cause, Verdict};
+use fault_manager::{Cause, Evidence, Verdict};
 
 /// The event in words; `None` for those that would only be noise.
 pub(super) fn describe(event: &Event) -> Option<String> {
@@ -107,8 +107,15 @@ fn judged(verdict: &Verdict) -> String {
         ),
         None => String::new(),
     };
+    let damage = match &verdict.evidence {
+        Evidence::Exception {
+            damage: Some(damage),
+            ..
+        } if verdict.actions.is_empty() => format!("; {damage}"),
+        _ => String::new(),
+    };
     format!(
-        "VERDICT {} {}: {}{cause}, {}{done}",
+        "VERDICT {} {}: {}{cause}, {}{done}{damage}",
         verdict.id.0,
         verdict.component,
         verdict.kind,

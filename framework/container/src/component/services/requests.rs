@@ -101,6 +101,7 @@ impl Services {
             address: None,
             backtrace: Vec::new(),
             thread_lost: false,
+            damage: None,
         };
         self.tell(detector, FaultKind::Reported, return_code, evidence);
     }
