@@ -12,7 +12,7 @@ mod secondary;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use system_model::rules::{FaultRules, IsolationTier, Preload};
+use system_model::rules::{ComponentRules, FaultRules, IsolationTier, Preload};
 use system_model::specification::{
     ApplicationSpecification, ComponentSpecification, Place, PortKind,
 };
@@ -126,7 +126,12 @@ pub fn assemble_together(
     if !problems.is_empty() {
         return Err(problems);
     }
-    let hosts = Hosts::new(options.executable.as_deref());
+    let in_hosts = |rules: &ComponentRules| {
+        let isolation = rules.isolation.as_ref();
+        isolation.is_some_and(|rule| rule.value.tier == IsolationTier::Process)
+    };
+    let wanted = rules.components.iter().any(in_hosts);
+    let hosts = Hosts::new(options.executable.as_deref().filter(|_| wanted));
     let factories = factories(
         specification,
         rules,

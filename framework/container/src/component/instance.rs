@@ -115,6 +115,13 @@ impl Instance {
         }
     }
 
+    /// Sees to it that its first callbacks need not wait for memory. (A host has its own.)
+    pub fn touch_memory(&self) {
+        if let Self::Guarded(guarded) = self {
+            guarded.touch_memory();
+        }
+    }
+
     /// Never call it again.
     pub fn quarantine(&mut self) {
         match self {

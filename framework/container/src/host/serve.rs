@@ -19,7 +19,8 @@ use crate::clock::nanoseconds;
 use crate::guard::loss::{Loss, losses, wait_for_loss};
 use crate::guard::{CallLimit, Callback, Ending, Guarded, ServiceCall, Trap, interrupt};
 use crate::library::LoadedLibrary;
-use crate::watchdog::{TICK, outrank_components};
+use crate::scheduling::outrank_components;
+use crate::watchdog::TICK;
 
 /// How often lost threads are looked for if no word of one came.
 const LOSS_PERIOD: Duration = Duration::from_millis(500);
