@@ -7,6 +7,7 @@ mod judgement;
 mod limits;
 mod messages;
 mod port_end;
+mod restored;
 mod services;
 mod succession;
 mod tap;
@@ -31,6 +32,7 @@ pub use limits::CallLimits;
 pub use port_end::{
     BoundMethod, Calls, DataInput, DataOutput, EventOutput, Inbox, PortEnd, Provider,
 };
+pub use restored::Restored;
 pub use services::{Detectors, Environment, Services};
 pub use tap::{InputTap, OutputTap, SafeDatum, VotedInput, VotingSource, Watch};
 

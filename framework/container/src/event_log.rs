@@ -5,9 +5,9 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use crossbeam::channel::{Receiver, RecvTimeoutError, Sender, TrySendError, bounded};
+use crossbeam::channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, TrySendError, bounded};
 use fault_manager::Verdict;
 use serde::Serialize;
 use system_model::fault::Fault;
@@ -18,6 +18,11 @@ const QUEUE: usize = 8192;
 
 /// Written lines reach the file at least this often, so that a person can watch it grow.
 const FLUSH_PERIOD: Duration = Duration::from_millis(200);
+
+/// How often the writer looks for events where nobody waits for it. It does not sleep on the queue:
+/// whoever records an event would have to wake it, and may be a component's executor in the middle
+/// of a recovery. A hundredth of what the queue holds comes in this time.
+const LOOK_PERIOD: Duration = Duration::from_millis(10);
 
 /// Something that happened.
 #[derive(Debug, Clone, Serialize)]
@@ -152,7 +157,6 @@ pub struct EventLog {
     sender: Sender<Option<Line>>,
     waits: bool,
     lost: AtomicU64,
-    echo: Option<Sender<(u64, Event)>>,
 }
 
 /// The thread that writes; to be closed when all has been said.
@@ -176,22 +180,23 @@ impl EventLog {
         let (sender, receiver) = bounded(QUEUE);
         let thread = std::thread::Builder::new()
             .name("event-log".to_owned())
-            .spawn(move || write_all(&receiver, file))?;
+            .spawn(move || {
+                let target = Target {
+                    output: file.map(BufWriter::new),
+                    echo,
+                };
+                write_all(&receiver, target, waits)
+            })?;
         let log = Self {
             sender,
             waits,
             lost: AtomicU64::new(0),
-            echo,
         };
         Ok((log, EventWriter { thread }))
     }
 
     /// Records an event at a time of the application's clock.
     pub fn record(&self, t_ns: u64, event: Event) {
-        if let Some(echo) = &self.echo {
-            // The person's view may lag; the file is the record.
-            let _lagging = echo.try_send((t_ns, event.clone()));
-        }
         let line = Some(Line { t_ns, event });
         if self.waits {
             // Fails only when the writer has ended, after which nobody reads.
@@ -226,24 +231,60 @@ impl EventWriter {
     }
 }
 
-fn write_all(receiver: &Receiver<Option<Line>>, file: Option<File>) -> io::Result<()> {
-    let mut output = file.map(BufWriter::new);
+/// Where the writer puts events.
+struct Target {
+    output: Option<BufWriter<File>>,
+    echo: Option<Sender<(u64, Event)>>,
+}
+
+impl Target {
+    fn write(&mut self, line: Line) -> io::Result<()> {
+        if let Some(output) = &mut self.output {
+            serde_json::to_writer(&mut *output, &line)?;
+            output.write_all(b"\n")?;
+        }
+        if let Some(echo) = &self.echo {
+            // The person's view may lag; the file is the record.
+            let _lagging = echo.try_send((line.t_ns, line.event));
+        }
+        Ok(())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.output.as_mut().map_or(Ok(()), Write::flush)
+    }
+}
+
+/// Writes until the end is said. Who records waits for room where `waits`, and is waited for.
+fn write_all(
+    receiver: &Receiver<Option<Line>>,
+    mut target: Target,
+    waits: bool,
+) -> io::Result<()> {
+    let mut flushed = Instant::now();
     loop {
-        match receiver.recv_timeout(FLUSH_PERIOD) {
-            Ok(Some(line)) => {
-                if let Some(output) = &mut output {
-                    serde_json::to_writer(&mut *output, &line)?;
-                    output.write_all(b"\n")?;
+        let received = if waits {
+            receiver
+                .recv_timeout(FLUSH_PERIOD)
+                .map_err(|error| match error {
+                    RecvTimeoutError::Timeout => TryRecvError::Empty,
+                    RecvTimeoutError::Disconnected => TryRecvError::Disconnected,
+                })
+        } else {
+            receiver.try_recv()
+        };
+        match received {
+            Ok(Some(line)) => target.write(line)?,
+            Err(TryRecvError::Empty) => {
+                if flushed.elapsed() >= FLUSH_PERIOD {
+                    target.flush()?;
+                    flushed = Instant::now();
+                }
+                if !waits {
+                    std::thread::sleep(LOOK_PERIOD);
                 }
             }
-            Err(RecvTimeoutError::Timeout) => {
-                if let Some(output) = &mut output {
-                    output.flush()?;
-                }
-            }
-            Ok(None) | Err(RecvTimeoutError::Disconnected) => {
-                return output.map_or(Ok(()), |mut output| output.flush());
-            }
+            Ok(None) | Err(TryRecvError::Disconnected) => return target.flush(),
         }
     }
 }

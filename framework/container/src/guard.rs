@@ -206,6 +206,12 @@ impl Guarded {
         self.side.set_injection(misbehaviour);
     }
 
+    /// Sees to it that the first callbacks need not wait for pages of its stack and its code.
+    pub fn touch_memory(&self) {
+        self.side.stack().touch();
+        self.frame.code.touch();
+    }
+
     /// When it misbehaved last as it was made to, just before that: what benchmarks count from.
     pub fn misbehaved(&self) -> Option<Instant> {
         self.side.misbehaved.get()

@@ -87,14 +87,15 @@ impl Checkpoints {
 
     /// The newest whole copy that was taken before `before_ns`; how many were found broken.
     pub fn newest_before(&self, before_ns: u64) -> (Option<Certified<'_>>, usize) {
-        let mut whole: Vec<&Copy> = self
-            .copies
-            .iter()
-            .filter(|copy| copy.sequence > 0 && copy.taken_ns < before_ns)
-            .collect();
-        whole.sort_by_key(|copy| copy.sequence);
         let mut broken = 0;
-        while let Some(copy) = whole.pop() {
+        let mut below = u64::MAX;
+        loop {
+            let whole = self.copies.iter().filter(|copy| {
+                copy.sequence > 0 && copy.sequence < below && copy.taken_ns < before_ns
+            });
+            let Some(copy) = whole.max_by_key(|copy| copy.sequence) else {
+                return (None, broken);
+            };
             if CHECKSUM.checksum(&copy.bytes) == copy.checksum {
                 let certified = Certified {
                     sequence: copy.sequence,
@@ -104,8 +105,8 @@ impl Checkpoints {
                 return (Some(certified), broken);
             }
             broken += 1;
+            below = copy.sequence;
         }
-        (None, broken)
     }
 
     /// Turns a bit of the newest copy round (fault injection).

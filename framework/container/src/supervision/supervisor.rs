@@ -108,6 +108,7 @@ impl Supervisor {
         let Some(standbys) = self.standbys.get(component) else {
             return;
         };
+        standbys.free_retired();
         for variant in standbys.wanting() {
             if let Err(reason) = standbys.prepare(variant, loss) {
                 let name = &standbys.factory().variants()[variant].specification;
