@@ -165,12 +165,15 @@ impl FaultManager {
                     && (fault.is_being_handled() || fault.handled_at.is_some_and(recent))
             })
         };
-        let faulty = self.history.all().map(|fault| {
+        let suspect = |fault: &Fault| {
             let root = self.root_of(fault.verdict.id);
-            (fault.component, root)
-        });
-        let mut suspects: Vec<(usize, FaultId)> =
-            faulty.filter(|(_, root)| explains(*root)).collect();
+            explains(root).then_some((fault.component, root))
+        };
+        let mut suspects: Vec<(usize, FaultId)> = if runs {
+            self.history.all().filter_map(suspect).collect()
+        } else {
+            self.history.open().filter_map(suspect).collect()
+        };
         if runs {
             let states = self.components.iter().enumerate();
             let down = states.filter_map(|(component, state)| Some((component, state.down?.by)));

@@ -86,6 +86,7 @@ impl FaultManager {
         self.now = before;
         // What was due earlier comes first; what is due just now leaves the observation the lead.
         self.elapse(|due| due < before);
+        let hurried = matches!(observation, Observation::Symptom(_));
         match observation {
             Observation::Running => self.run(),
             Observation::Symptom(symptom) => self.symptom(*symptom),
@@ -101,6 +102,7 @@ impl FaultManager {
         }
         self.elapse(|due| due <= before);
         self.record();
+        self.history.tidy(hurried);
         std::mem::take(&mut self.effects)
     }
 
@@ -130,7 +132,7 @@ impl FaultManager {
         let state = self.components.get(component)?;
         let waits = || {
             self.history
-                .all()
+                .open()
                 .any(|fault| fault.component == component && fault.waits.is_some() && !fault.runs)
         };
         Some(match &state.down {
@@ -155,6 +157,5 @@ impl FaultManager {
                 self.effects.push(Effect::Record(verdict));
             }
         }
-        self.history.trim();
     }
 }

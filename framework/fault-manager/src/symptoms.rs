@@ -82,7 +82,7 @@ impl FaultManager {
     pub(crate) fn judge(&mut self, symptom: &Symptom) {
         let terms = self.detectors.terms(&self.system, symptom);
         let component = self.detectors.all[symptom.detector.0].component;
-        let open = self.history.open(symptom.detector, symptom.kind, &terms);
+        let open = self.history.fault_of(symptom.detector, symptom.kind, &terms);
         let id = open.unwrap_or_else(|| {
             let id = self.history.number();
             let named = &self.system.components[component];
