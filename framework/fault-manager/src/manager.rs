@@ -122,6 +122,11 @@ impl FaultManager {
         self.history.all().map(|fault| &fault.verdict)
     }
 
+    /// The verdict on a fault, unless it has been forgotten.
+    pub fn verdict(&self, id: FaultId) -> Option<&Verdict> {
+        self.history.get(id).map(|fault| &fault.verdict)
+    }
+
     /// Whether an emergency stop is latched.
     pub fn is_emergency(&self) -> bool {
         self.emergency.is_some()

@@ -7,14 +7,13 @@
 
 use std::time::Duration;
 
+use crc32c::crc32c;
+
 use super::services::Services;
 
 /// Copies that are kept. The oldest is two periods older than the newest: enough for a fault that
 /// is found some cycles after it began.
 const KEPT: usize = 3;
-
-/// The polynomial of iSCSI, for which processors have an instruction.
-const CHECKSUM: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISCSI);
 
 /// The copies of one component.
 #[derive(Debug)]
@@ -31,6 +30,8 @@ struct Copy {
     /// 0 while it is being written, or before the first time.
     sequence: u64,
     taken_ns: u64,
+    /// By the polynomial of iSCSI, for which processors have an instruction: a table would take
+    /// longer than all the rest of a takeover.
     checksum: u32,
     bytes: Vec<u8>,
 }
@@ -79,7 +80,7 @@ impl Checkpoints {
         if !memory.copy_to(&mut copy.bytes) {
             return;
         }
-        copy.checksum = CHECKSUM.checksum(&copy.bytes);
+        copy.checksum = crc32c(&copy.bytes);
         copy.taken_ns = now_ns;
         copy.sequence = next;
         self.sequence = next;
@@ -96,7 +97,7 @@ impl Checkpoints {
             let Some(copy) = whole.max_by_key(|copy| copy.sequence) else {
                 return (None, broken);
             };
-            if CHECKSUM.checksum(&copy.bytes) == copy.checksum {
+            if crc32c(&copy.bytes) == copy.checksum {
                 let certified = Certified {
                     sequence: copy.sequence,
                     taken_ns: copy.taken_ns,
@@ -123,7 +124,7 @@ impl Checkpoints {
         self.copies[(self.sequence % KEPT as u64) as usize] = Copy {
             sequence: self.sequence,
             taken_ns,
-            checksum: CHECKSUM.checksum(content),
+            checksum: crc32c(content),
             bytes: content.to_vec(),
         };
     }
@@ -155,7 +156,7 @@ mod tests {
         checkpoints.corrupt();
         assert_eq!(taken(&checkpoints, u64::MAX), (Some(30), 1));
         for copy in &mut checkpoints.copies {
-            copy.checksum = !CHECKSUM.checksum(&copy.bytes);
+            copy.checksum = !crc32c(&copy.bytes);
         }
         assert_eq!(taken(&checkpoints, u64::MAX), (None, 3));
     }

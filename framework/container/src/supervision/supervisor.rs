@@ -5,18 +5,19 @@
 //! to be done with a component is an order to its executor.
 
 use std::collections::VecDeque;
-use std::sync::atomic::AtomicU64;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
 
 use crossbeam::channel::{Receiver, Sender, bounded};
-use fault_manager::{FaultId, FaultManager, Observation, Verdict};
+use fault_manager::{Effect, FaultId, FaultManager, Observation, Verdict};
 use system_model::specification::ManagerPort;
 
 use super::emergency::Emergency;
 use super::orders::{Order, Orders};
 use super::standby::Standbys;
 use super::{ManagerOutputs, Monitors};
+use crate::clock::nanoseconds;
 use crate::component::Environment;
 use crate::event_log::Event;
 use crate::guard::loss::Loss;
@@ -25,6 +26,10 @@ use crate::wake::Wake;
 
 /// Verdicts whose decision was timed; older ones are not recorded any more.
 const MOST_DECISIONS: usize = 256;
+
+/// Verdicts that may wait to go on record: more than one fault changes, by itself and by what
+/// follows from it.
+const MOST_UNRECORDED: usize = 64;
 
 /// The shell.
 pub struct Supervisor {
@@ -38,6 +43,8 @@ pub struct Supervisor {
     pub(super) monitors: Mutex<Monitors>,
     /// Wakes the thread that looks after time.
     pub(super) wake: Wake,
+    /// When that one looks again, in nanoseconds.
+    pub(super) looks_again_ns: AtomicU64,
     /// When injections were looked at last, in nanoseconds.
     pub(super) injected_ns: AtomicU64,
     /// Components of which a standby was used, for the thread that prepares another.
@@ -51,9 +58,26 @@ pub(super) struct Core {
     /// How long decisions took, by fault, in microseconds.
     decisions: VecDeque<(FaultId, u64)>,
     pub(super) outputs: ManagerOutputs,
+    /// Verdicts that are to go on record when no executor waits to recover a component.
+    records: Vec<Unrecorded>,
+}
+
+/// A verdict that is not on record yet.
+struct Unrecorded {
+    at_ns: u64,
+    verdict: Box<Verdict>,
+    /// How long the decision took.
+    took: Duration,
 }
 
 impl Core {
+    /// When the fault manager, or an order, wants the next tick, in nanoseconds.
+    pub(super) fn due_ns(&self) -> Option<u64> {
+        let later = self.later.iter().map(|(time_ns, _)| *time_ns).min();
+        let manager = self.manager.due().map(nanoseconds);
+        later.into_iter().chain(manager).min()
+    }
+
     /// How long the decision about a fault took, if it was timed.
     fn decision_us(&self, id: FaultId) -> Option<u64> {
         let known = self.decisions.iter().find(|(known, _)| *known == id)?;
@@ -89,6 +113,7 @@ impl Supervisor {
                 later: Vec::new(),
                 decisions: VecDeque::new(),
                 outputs: ManagerOutputs::default(),
+                records: Vec::with_capacity(MOST_UNRECORDED),
             }),
             orders,
             standbys,
@@ -96,6 +121,7 @@ impl Supervisor {
             emergency,
             monitors: Mutex::new(monitors),
             wake: Wake::default(),
+            looks_again_ns: AtomicU64::new(u64::MAX),
             injected_ns: AtomicU64::new(0),
             wanted,
         };
@@ -179,7 +205,8 @@ impl Supervisor {
             .last()
             .cloned();
         if let Some(verdict) = of_it {
-            self.record(&mut core, verdict, Duration::ZERO);
+            let now_ns = self.environment.clock.now_ns();
+            self.record(&mut core, verdict, Duration::ZERO, now_ns);
         }
         true
     }
@@ -197,25 +224,59 @@ impl Supervisor {
                 // Whoever is at it may only be reading: the thread that looks after time looks again.
                 Err(TryLockError::WouldBlock) => return self.rouse(),
             };
+            let simulated = self.environment.clock.is_simulated();
+            self.write_records(&mut core);
+            let mut urgent = false;
             while let Some(observation) = self.environment.observations.take() {
                 let now = self.environment.clock.now();
                 let start = Instant::now();
                 let effects = core.manager.observe(now, observation);
-                let took = if self.environment.clock.is_simulated() {
+                let took = if simulated {
                     Duration::ZERO
                 } else {
                     start.elapsed()
                 };
                 for effect in effects {
+                    urgent |= matches!(&effect, Effect::Act(planned) if planned.not_before <= now);
                     self.carry_out(&mut core, effect, took);
                 }
             }
+            if !urgent {
+                self.write_records(&mut core);
+            }
+            let due_ns = core.due_ns();
             drop(core);
-            self.rouse();
+            if due_ns.is_some_and(|due_ns| due_ns < self.looks_again_ns.load(Ordering::SeqCst)) {
+                self.rouse();
+            }
         }
     }
 
-    pub(super) fn record(&self, core: &mut Core, mut verdict: Verdict, took: Duration) {
+    /// Keeps a verdict for the record. In simulated time, where nobody waits, it goes there at once,
+    /// before what follows from it.
+    pub(super) fn keep_record(&self, core: &mut Core, verdict: Box<Verdict>, took: Duration) {
+        let at_ns = self.environment.clock.now_ns();
+        if self.environment.clock.is_simulated() || core.records.len() == MOST_UNRECORDED {
+            self.write_records(core);
+            return self.record(core, *verdict, took, at_ns);
+        }
+        core.records.push(Unrecorded {
+            at_ns,
+            verdict,
+            took,
+        });
+    }
+
+    /// Puts the verdicts on record that wait for it.
+    pub(super) fn write_records(&self, core: &mut Core) {
+        let mut records = std::mem::take(&mut core.records);
+        for one in records.drain(..) {
+            self.record(core, *one.verdict, one.took, one.at_ns);
+        }
+        core.records = records;
+    }
+
+    fn record(&self, core: &mut Core, mut verdict: Verdict, took: Duration, at_ns: u64) {
         self.environment.scenes.complete(&mut verdict);
         let known = core.decision_us(verdict.id);
         if known.is_none() {
@@ -224,10 +285,8 @@ impl Supervisor {
             self.raise(core, ManagerPort::Fault);
         }
         verdict.decision_us += known.unwrap_or_else(|| core.time_decision(verdict.id, took));
-        self.environment.events.record(
-            self.environment.clock.now_ns(),
-            Event::Verdict(Box::new(verdict)),
-        );
+        let event = Event::Verdict(Box::new(verdict));
+        self.environment.events.record(at_ns, event);
     }
 
     pub(super) fn lock(&self) -> MutexGuard<'_, Core> {

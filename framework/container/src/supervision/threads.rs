@@ -10,7 +10,6 @@ use std::time::Duration;
 use crossbeam::channel::Receiver;
 
 use super::Supervisor;
-use crate::clock::nanoseconds;
 use crate::guard::loss::LostThread;
 use crate::lane::{Crew, Lane, Work};
 
@@ -81,10 +80,7 @@ impl ManagerThreads {
 fn look_after_time(supervisor: &Supervisor, stopping: &AtomicBool) {
     while !stopping.load(Ordering::Acquire) {
         supervisor.tick();
-        let now_ns = nanoseconds(supervisor.environment().clock.now());
-        let due_ns = supervisor.due_ns().unwrap_or(u64::MAX);
-        let sleep = Duration::from_nanos(due_ns.saturating_sub(now_ns));
-        supervisor.sleep(sleep.min(LONGEST_SLEEP));
+        supervisor.sleep_until_due(LONGEST_SLEEP);
     }
 }
 
