@@ -256,11 +256,7 @@ impl Target {
 }
 
 /// Writes until the end is said. Who records waits for room where `waits`, and is waited for.
-fn write_all(
-    receiver: &Receiver<Option<Line>>,
-    mut target: Target,
-    waits: bool,
-) -> io::Result<()> {
+fn write_all(receiver: &Receiver<Option<Line>>, mut target: Target, waits: bool) -> io::Result<()> {
     let mut flushed = Instant::now();
     loop {
         let received = if waits {

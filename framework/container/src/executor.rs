@@ -120,8 +120,7 @@ impl Executor {
     pub fn obey(&mut self, supervisor: &Supervisor, lane: &Lane) {
         while let Some(order) = self.orders.take() {
             self.orders.hurry(CallLimit::NONE);
-            let is_meant =
-                |member: &Member| usize::try_from(member.number) == Ok(order.component);
+            let is_meant = |member: &Member| usize::try_from(member.number) == Ok(order.component);
             let Some(index) = self.members.iter().position(is_meant) else {
                 continue;
             };

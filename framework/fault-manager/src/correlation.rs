@@ -131,7 +131,8 @@ impl FaultManager {
     /// not over before one that is, and the oldest.
     fn explain(&self, id: FaultId) -> Option<FaultId> {
         let fault = self.history.get(id)?;
-        let suspects = self.suspects(fault.runs);
+        let mut suspects = self.suspects(fault.runs);
+        suspects.retain(|(_, root)| *root != id);
         if suspects.is_empty() {
             return None;
         }
@@ -145,7 +146,7 @@ impl FaultManager {
             let near = |component: usize| steps.iter().any(|(_, step)| *step == component);
             let roots = suspects
                 .iter()
-                .filter(|(component, root)| near(*component) && *root != id)
+                .filter(|(component, _)| near(*component))
                 .map(|(_, root)| *root);
             if let Some(root) = roots.min_by_key(|root| (is_over(*root), *root)) {
                 return Some(root);

@@ -82,6 +82,14 @@ impl FaultManager {
     /// Actions come before the records that tell of them, so that nothing waits for a record; a
     /// verdict that changes several times by one observation is recorded once.
     pub fn observe(&mut self, now: Duration, observation: Observation) -> Vec<Effect> {
+        let mut effects = self.react(now, observation);
+        effects.extend(self.records().map(Effect::Record));
+        effects
+    }
+
+    /// As [`Self::observe`], for who is in a hurry: the verdicts that have changed are to be asked
+    /// for afterwards ([`Self::records`]); one that changes again before that is recorded once.
+    pub fn react(&mut self, now: Duration, observation: Observation) -> Vec<Effect> {
         let before = self.now.max(now);
         self.now = before;
         // What was due earlier comes first; what is due just now leaves the observation the lead.
@@ -101,7 +109,6 @@ impl FaultManager {
             Observation::Tick => {}
         }
         self.elapse(|due| due <= before);
-        self.record();
         self.history.tidy(hurried);
         std::mem::take(&mut self.effects)
     }
@@ -154,13 +161,12 @@ impl FaultManager {
         self.components.iter().map(level).collect()
     }
 
-    /// Puts the verdicts on record that have changed.
-    fn record(&mut self) {
-        for id in std::mem::take(&mut self.changed) {
-            if let Some(fault) = self.history.get(id) {
-                let verdict = Box::new(fault.verdict.clone());
-                self.effects.push(Effect::Record(verdict));
-            }
-        }
+    /// The verdicts that have changed since they were asked for last, for the record.
+    pub fn records(&mut self) -> impl Iterator<Item = Box<Verdict>> {
+        let changed = std::mem::take(&mut self.changed).into_iter();
+        changed.filter_map(|id| {
+            let fault = self.history.get(id)?;
+            Some(Box::new(fault.verdict.clone()))
+        })
     }
 }

@@ -238,7 +238,10 @@ fn reorder(calls: &mut Calls, old: &PortDescription, port: &PortDescription) {
         .map(Some)
         .collect();
     let take = |method: &MethodDescription| {
-        let index = old.methods.iter().position(|other| other.name == method.name)?;
+        let index = old
+            .methods
+            .iter()
+            .position(|other| other.name == method.name)?;
         bound.get_mut(index)?.take()
     };
     calls.methods = port.methods.iter().filter_map(take).collect();

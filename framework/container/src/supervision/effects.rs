@@ -13,11 +13,12 @@ use super::supervisor::{Core, Supervisor};
 use crate::clock::nanoseconds;
 
 impl Supervisor {
-    pub(super) fn carry_out(&self, core: &mut Core, effect: Effect, took: Duration) {
+    pub(super) fn carry_out(&self, core: &mut Core, effect: Effect) {
         match effect {
             Effect::Act(planned) => self.act(core, &planned),
             Effect::Abandon(action) => core.later.retain(|(_, order)| order.action != Some(action)),
-            Effect::Record(verdict) => self.keep_record(core, verdict, took),
+            // Asked for by itself: see `Self::write_records`.
+            Effect::Record(_) => {}
             Effect::Rearm => {
                 for actuator in self.emergency.rearm(self.environment.clock.now_ns()) {
                     self.give(Order {

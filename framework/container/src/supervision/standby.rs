@@ -43,7 +43,11 @@ impl Standbys {
     /// reset, because loading takes longer than all the rest of it.
     pub fn new(factory: Arc<Factory>, keeps_own: bool) -> Self {
         Self {
-            places: factory.variants().iter().map(|_| Place::default()).collect(),
+            places: factory
+                .variants()
+                .iter()
+                .map(|_| Place::default())
+                .collect(),
             factory,
             retired: AtomicCell::new(None),
             keeps_own,

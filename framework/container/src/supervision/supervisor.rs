@@ -27,10 +27,6 @@ use crate::wake::Wake;
 /// Verdicts whose decision was timed; older ones are not recorded any more.
 const MOST_DECISIONS: usize = 256;
 
-/// Verdicts that may wait to go on record: more than one fault changes, by itself and by what
-/// follows from it.
-const MOST_UNRECORDED: usize = 64;
-
 /// The shell.
 pub struct Supervisor {
     pub(super) environment: Arc<Environment>,
@@ -58,15 +54,7 @@ pub(super) struct Core {
     /// How long decisions took, by fault, in microseconds.
     decisions: VecDeque<(FaultId, u64)>,
     pub(super) outputs: ManagerOutputs,
-    /// Verdicts that are to go on record when no executor waits to recover a component.
-    records: Vec<Unrecorded>,
-}
-
-/// A verdict that is not on record yet.
-struct Unrecorded {
-    at_ns: u64,
-    verdict: Box<Verdict>,
-    /// How long the decision took.
+    /// How long the last decision took.
     took: Duration,
 }
 
@@ -113,7 +101,7 @@ impl Supervisor {
                 later: Vec::new(),
                 decisions: VecDeque::new(),
                 outputs: ManagerOutputs::default(),
-                records: Vec::with_capacity(MOST_UNRECORDED),
+                took: Duration::ZERO,
             }),
             orders,
             standbys,
@@ -230,15 +218,17 @@ impl Supervisor {
             while let Some(observation) = self.environment.observations.take() {
                 let now = self.environment.clock.now();
                 let start = Instant::now();
-                let effects = core.manager.observe(now, observation);
-                let took = if simulated {
-                    Duration::ZERO
-                } else {
-                    start.elapsed()
-                };
+                let effects = core.manager.react(now, observation);
+                if !simulated {
+                    core.took = start.elapsed();
+                }
                 for effect in effects {
                     urgent |= matches!(&effect, Effect::Act(planned) if planned.not_before <= now);
-                    self.carry_out(&mut core, effect, took);
+                    self.carry_out(&mut core, effect);
+                }
+                if simulated {
+                    // Nobody waits, and the record tells everything in its order.
+                    self.write_records(&mut core);
                 }
             }
             if !urgent {
@@ -252,28 +242,13 @@ impl Supervisor {
         }
     }
 
-    /// Keeps a verdict for the record. In simulated time, where nobody waits, it goes there at once,
-    /// before what follows from it.
-    pub(super) fn keep_record(&self, core: &mut Core, verdict: Box<Verdict>, took: Duration) {
-        let at_ns = self.environment.clock.now_ns();
-        if self.environment.clock.is_simulated() || core.records.len() == MOST_UNRECORDED {
-            self.write_records(core);
-            return self.record(core, *verdict, took, at_ns);
-        }
-        core.records.push(Unrecorded {
-            at_ns,
-            verdict,
-            took,
-        });
-    }
-
-    /// Puts the verdicts on record that wait for it.
+    /// Puts the verdicts on record that have changed.
     pub(super) fn write_records(&self, core: &mut Core) {
-        let mut records = std::mem::take(&mut core.records);
-        for one in records.drain(..) {
-            self.record(core, *one.verdict, one.took, one.at_ns);
+        let (at_ns, took) = (self.environment.clock.now_ns(), core.took);
+        let changed: Vec<Box<Verdict>> = core.manager.records().collect();
+        for verdict in changed {
+            self.record(core, *verdict, took, at_ns);
         }
-        core.records = records;
     }
 
     fn record(&self, core: &mut Core, mut verdict: Verdict, took: Duration, at_ns: u64) {

@@ -2,8 +2,8 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
-use std::sync::atomic::{AtomicI32, AtomicU64, AtomicUsize, Ordering};
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicI32, AtomicU64, AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// The thread that is looked at; 0: none.
@@ -32,8 +32,12 @@ pub fn between(from: Instant, to: Instant) -> usize {
     let Some(begin) = BEGIN.get() else { return 0 };
     let ns = |instant: Instant| (instant - *begin).as_nanos() as u64;
     let count = COUNT.load(Ordering::Acquire).min(MOST);
-    let times = TIMES_NS[..count].iter().map(|time| time.load(Ordering::Relaxed));
-    times.filter(|time| (ns(from)..=ns(to)).contains(time)).count()
+    let times = TIMES_NS[..count]
+        .iter()
+        .map(|time| time.load(Ordering::Relaxed));
+    times
+        .filter(|time| (ns(from)..=ns(to)).contains(time))
+        .count()
 }
 
 /// The system's allocator, watched.

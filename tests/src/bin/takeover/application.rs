@@ -12,8 +12,8 @@ use container::library::LibrarySearch;
 use container::status::ComponentStatus;
 use container::system::{Application, ClockKind, RunOptions, System};
 use crossbeam::channel::{Receiver, bounded};
-use tests::until;
 use system_profile::{LoadOptions, load_application, load_injections, load_rules};
+use tests::until;
 
 use super::{Plan, allocations};
 
@@ -87,7 +87,8 @@ fn watch(system: &System, faults: usize) -> Vec<Takeover> {
     let status: &Arc<ComponentStatus> = &system.statuses()[0];
     let begin = Instant::now() - system.now();
     let mut takeovers = Vec::new();
-    let limit = Instant::now() + Duration::from_secs(60) + Duration::from_millis(20) * faults as u32;
+    let limit =
+        Instant::now() + Duration::from_secs(60) + Duration::from_millis(20) * faults as u32;
     let mut last_ns = 0;
     let enough = (FIRST_CYCLE + EVERY_CYCLES * (faults + 10)) as u64;
     // One that comes while this thread is kept from looking is not counted.
@@ -133,7 +134,9 @@ fn thread_named(name: &str) -> i32 {
         let is_named = |path: &Path| {
             std::fs::read_to_string(path.join("comm")).is_ok_and(|found| found.trim() == name)
         };
-        let named = threads.filter_map(Result::ok).find(|one| is_named(&one.path()));
+        let named = threads
+            .filter_map(Result::ok)
+            .find(|one| is_named(&one.path()));
         found = named.map(|one| one.file_name());
         found.is_some()
     });
@@ -169,7 +172,9 @@ fn load(folder: &Path, plan: &Plan) -> Application {
                  <ports>{ports}</ports></component_profile>"
             ),
         );
-        members += &format!("<subcomponent><name>{name}</name><reference>{name}.xml</reference></subcomponent>");
+        members += &format!(
+            "<subcomponent><name>{name}</name><reference>{name}.xml</reference></subcomponent>"
+        );
     }
     let profile = write(
         "application.xml",
@@ -204,9 +209,13 @@ fn load(folder: &Path, plan: &Plan) -> Application {
     let rules = load_rules(&specification, &[rules], &options);
     let injected = load_injections(&specification, &injections);
     Application {
-        rules: rules.rules.unwrap_or_else(|| panic!("{:#?}", rules.problems)),
+        rules: rules
+            .rules
+            .unwrap_or_else(|| panic!("{:#?}", rules.problems)),
         models: Vec::new(),
-        injections: injected.injections.unwrap_or_else(|| panic!("{:#?}", injected.problems)),
+        injections: injected
+            .injections
+            .unwrap_or_else(|| panic!("{:#?}", injected.problems)),
         specification,
     }
 }

@@ -44,7 +44,11 @@ impl HostServices for NoServices {
 
 /// Measures as many as the plan has faults, in nanoseconds.
 pub fn measure(plan: &Plan) -> Vec<u64> {
-    let (faults, walks, fifo) = (plan.faults, plan.walks_kib * 1024, plan.policy == "SCHED_FIFO");
+    let (faults, walks, fifo) = (
+        plan.faults,
+        plan.walks_kib * 1024,
+        plan.policy == "SCHED_FIFO",
+    );
     let thread = std::thread::spawn(move || {
         if fifo {
             let priority = ThreadPriorityValue::try_from(PRIORITY).expect("a priority");
