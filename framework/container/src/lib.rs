@@ -18,6 +18,7 @@ pub mod lane;
 pub mod library;
 pub mod port;
 pub mod schedule;
+mod scheduling;
 pub mod status;
 pub mod summary;
 pub mod supervision;

@@ -10,6 +10,7 @@ mod observations;
 mod operator;
 mod orders;
 mod recovery;
+mod refill;
 mod scenes;
 mod standby;
 mod supervisor;

@@ -190,7 +190,9 @@ fn work_at_once(
 /// Another standby for the one that was used: now where time is simulated, else in the background.
 pub fn refill(component: usize, supervisor: &Supervisor, lane: &Lane) {
     if supervisor.environment().clock.is_simulated() {
-        supervisor.prepare_standbys(component, lane.loss());
+        if let Err(reason) = supervisor.prepare_standbys(component, lane.loss()) {
+            supervisor.notice(&reason);
+        }
     } else {
         supervisor.want_standbys(component);
     }

@@ -116,22 +116,26 @@ impl Supervisor {
         (supervisor, wants)
     }
 
-    /// Prepares all standbys of a component that the rules want and are not there. One that cannot
-    /// be prepared is made when it is needed.
-    pub fn prepare_standbys(&self, component: usize, loss: &Loss) {
+    /// Prepares all standbys of a component that the rules want and are not there.
+    ///
+    /// # Errors
+    /// Which one could not be prepared, and why; then it is made when it is needed.
+    pub fn prepare_standbys(&self, component: usize, loss: &Loss) -> Result<(), String> {
         let Some(standbys) = self.standbys.get(component) else {
-            return;
+            return Ok(());
         };
         standbys.free_retired();
+        let mut failure = Ok(());
         for variant in standbys.wanting() {
             if let Err(reason) = standbys.prepare(variant, loss) {
                 let name = &standbys.factory().variants()[variant].specification;
-                self.notice(&format!(
+                failure = Err(format!(
                     "no standby '{}' for '{}' could be prepared: {reason}",
                     name.type_name, name.name
                 ));
             }
         }
+        failure
     }
 
     /// Asks the thread that prepares standbys for what is missing.
@@ -180,23 +184,20 @@ impl Supervisor {
         verdicts
     }
 
-    /// Finds the backtrace of a component that was taken off, if one waits for that, and puts the
-    /// verdict on record again with it; whether there was one.
-    pub(super) fn find_backtrace(&self) -> bool {
-        let Some((component, incarnation)) = self.environment.scenes.look_at_one() else {
-            return false;
-        };
-        let mut core = self.lock();
-        let verdicts = core.manager.verdicts();
-        let of_it = verdicts
-            .filter(|it| (it.component == component) && it.incarnation == incarnation)
-            .last()
-            .cloned();
-        if let Some(verdict) = of_it {
-            let now_ns = self.environment.clock.now_ns();
-            self.record(&mut core, verdict, Duration::ZERO, now_ns);
+    /// Puts the verdicts on record again whose backtraces were found since the last time.
+    pub fn record_backtraces(&self) {
+        while let Some((component, incarnation)) = self.environment.scenes.take_found() {
+            let mut core = self.lock();
+            let verdicts = core.manager.verdicts();
+            let of_it = verdicts
+                .filter(|it| (it.component == component) && it.incarnation == incarnation)
+                .last()
+                .cloned();
+            if let Some(verdict) = of_it {
+                let now_ns = self.environment.clock.now_ns();
+                self.record(&mut core, verdict, Duration::ZERO, now_ns);
+            }
         }
-        true
     }
 
     /// Whether the emergency stop is latched.

@@ -10,8 +10,10 @@ use std::time::Duration;
 use crossbeam::channel::Receiver;
 
 use super::Supervisor;
+use super::refill::Refills;
 use crate::guard::loss::LostThread;
 use crate::lane::{Crew, Lane, Work};
+use crate::scheduling;
 
 /// The longest sleep of the thread that looks after time, so that it notices its end.
 const LONGEST_SLEEP: Duration = Duration::from_millis(100);
@@ -29,7 +31,9 @@ pub struct ManagerThreads {
 }
 
 impl ManagerThreads {
-    /// Starts all three.
+    /// Starts all three. `above`: the highest priority of real-time executors, if there are any:
+    /// the thread that looks after time goes before them, because what it holds they need in a
+    /// recovery, and because their own work is what it watches.
     ///
     /// # Errors
     /// If the system refuses a thread.
@@ -38,11 +42,17 @@ impl ManagerThreads {
         supervisor: &Arc<Supervisor>,
         crew: &Arc<Crew>,
         wanted: Receiver<usize>,
+        above: Option<u8>,
     ) -> io::Result<()> {
         let (stopping, clocked) = (Arc::clone(&self.stopping), Arc::clone(supervisor));
         let thread = std::thread::Builder::new()
             .name("fault-manager".to_owned())
-            .spawn(move || look_after_time(&clocked, &stopping))?;
+            .spawn(move || {
+                if let Some(priority) = above {
+                    scheduling::outrank(priority);
+                }
+                look_after_time(&clocked, &stopping);
+            })?;
         self.clock = Some(thread);
         let (stopping, reader) = (Arc::clone(&self.stopping), Arc::clone(supervisor));
         let thread = std::thread::Builder::new()
@@ -52,9 +62,11 @@ impl ManagerThreads {
         let work = Preparation {
             supervisor: Arc::clone(supervisor),
             wanted,
+            refills: Refills::default(),
+            at: None,
         };
         let lane = Lane::new("standbys", Box::new(work));
-        crew.start(&lane, || {})?;
+        crew.start(&lane, scheduling::give_way)?;
         self.preparation = Some(lane);
         Ok(())
     }
@@ -70,6 +82,7 @@ impl ManagerThreads {
             // It ends within one look; a panic in it has been printed.
             let _panicked = thread.join();
         }
+        supervisor.record_backtraces();
         if let Some(lane) = self.preparation.take() {
             lane.stop();
             let _left_behind = lane.wait(2 * LOOK_PERIOD);
@@ -86,29 +99,59 @@ fn look_after_time(supervisor: &Supervisor, stopping: &AtomicBool) {
 
 fn find_backtraces(supervisor: &Supervisor, stopping: &AtomicBool) {
     while !stopping.load(Ordering::Acquire) {
-        if !supervisor.find_backtrace() {
+        if !supervisor.environment().scenes.look_at_one() {
             std::thread::sleep(LOOK_PERIOD);
         }
     }
     // Those that are left belong to verdicts on record.
-    while supervisor.find_backtrace() {}
+    while supervisor.environment().scenes.look_at_one() {}
 }
 
-/// Prepares standbys in place of those that were used.
+/// Prepares standbys in place of those that were used, behind everybody else.
 struct Preparation {
     supervisor: Arc<Supervisor>,
     wanted: Receiver<usize>,
+    refills: Refills,
+    /// The component that it is at.
+    at: Option<usize>,
+}
+
+impl Preparation {
+    fn now(&self) -> Duration {
+        self.supervisor.environment().clock.now()
+    }
+
+    fn ended(&mut self, component: usize, result: Result<(), String>) {
+        let now = self.now();
+        let succeeded = result.is_ok();
+        if self.refills.attempted(component, succeeded, now)
+            && let Err(reason) = result
+        {
+            self.supervisor.notice(&reason);
+        }
+    }
 }
 
 impl Work for Preparation {
     fn run(&mut self, lane: &Lane) {
         while !lane.is_stopping() {
             if let Ok(component) = self.wanted.recv_timeout(LOOK_PERIOD) {
-                self.supervisor.prepare_standbys(component, lane.loss());
+                self.refills.want(component, self.now());
+            }
+            while let Some(component) = self.refills.next(self.now()) {
+                self.at = Some(component);
+                let result = self.supervisor.prepare_standbys(component, lane.loss());
+                self.at = None;
+                self.ended(component, result);
             }
         }
     }
 
-    /// The standby that was being prepared is lost with the thread: it is made when it is needed.
-    fn after_loss(&mut self, _lost: &LostThread) {}
+    /// The standby that was being prepared is lost with the thread.
+    fn after_loss(&mut self, _lost: &LostThread) {
+        if let Some(component) = self.at.take() {
+            let reason = "a standby's thread was lost in the C library while it was prepared";
+            self.ended(component, Err(reason.to_owned()));
+        }
+    }
 }

@@ -23,6 +23,7 @@ impl Supervisor {
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .look(Duration::from_nanos(now_ns), &self.environment.observations);
+        self.record_backtraces();
         let (due, wants_tick) = {
             let mut core = self.lock();
             self.write_records(&mut core);

@@ -175,12 +175,12 @@ impl System {
                 self.lanes.push((lane, members));
             }
             ClockKind::Real => {
-                self.manager_threads
-                    .start(&self.supervisor, &self.crew, wanted)?;
-                if executors
-                    .iter()
-                    .any(|one| one.policy != SchedulingPolicy::Other)
-                {
+                let real_time = executors.iter();
+                let real_time = real_time.filter(|one| one.policy != SchedulingPolicy::Other);
+                let above = real_time.map(|one| one.priority).max();
+                let threads = &mut self.manager_threads;
+                threads.start(&self.supervisor, &self.crew, wanted, above)?;
+                if above.is_some() {
                     self.lock_memory();
                 }
                 if let Some(world) = &self.world {
