@@ -15,6 +15,10 @@ use super::services::Services;
 /// is found some cycles after it began.
 const KEPT: usize = 3;
 
+/// Cycles of the machine's clock, and those that a successor does again, come as unevenly as this
+/// part of a period: a component with a backup in every cycle shall have it in every cycle.
+const UNEVENNESS: u64 = 8;
+
 /// The copies of one component.
 #[derive(Debug)]
 pub struct Checkpoints {
@@ -71,7 +75,7 @@ impl Checkpoints {
         let Some(memory) = services.critical_memory() else {
             return;
         };
-        self.due_ns = now_ns + self.period_ns;
+        self.due_ns = now_ns + self.period_ns - self.period_ns / UNEVENNESS;
         let next = self.sequence + 1;
         let copy = &mut self.copies[(next % KEPT as u64) as usize];
         copy.sequence = 0;
