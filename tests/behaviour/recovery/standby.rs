@@ -3,7 +3,8 @@
 
 use tests::{Application, Member, Outcome};
 
-/// A counter that remembers, with a standby; a recorder that is told every number.
+/// A counter that remembers, with a standby, and behind it, in the same executor, a recorder that is
+/// told every number.
 fn counting(standby: &str, injections: &str, period_ms: u64) -> Application {
     let rules = format!(
         "<component name='counter'>{standby}\
@@ -13,8 +14,8 @@ fn counting(standby: &str, injections: &str, period_ms: u64) -> Application {
     let counter = Member::new("counter", "counter").property("remembers", "true");
     let recorder = Member::new("recorder", "recorder");
     Application::new()
-        .with(&counter.period(period_ms).priority(1))
-        .with(&recorder.period(period_ms))
+        .with(&counter.kind("periodic-shared").period(period_ms))
+        .with(&recorder.kind("periodic-shared").period(period_ms))
         .connect("data", "counter.output", "recorder.input")
         .rules(&rules)
         .injections(injections)
