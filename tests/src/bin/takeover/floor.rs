@@ -17,8 +17,10 @@ use thread_priority::{
 use super::Plan;
 use super::application::PRIORITY;
 
-/// A fault every so often, as in the application.
-const DISTANCE: Duration = Duration::from_millis(4);
+/// Cycles before each fault, in which the thread does as the application's does: it works and sleeps,
+/// and others have the processor meanwhile.
+const CYCLES: usize = 4;
+const PERIOD: Duration = Duration::from_millis(1);
 
 const EMPTY: Callbacks = Callbacks {
     create: Some(create),
@@ -61,10 +63,7 @@ pub fn measure(plan: &Plan) -> Vec<u64> {
         }
         let mut ground = vec![0u8; walks];
         Guarded::prepare_thread().expect("a stack for the handler");
-        let sample = |_| {
-            std::thread::sleep(DISTANCE);
-            trap(&mut ground)
-        };
+        let sample = |_| trap(&mut ground);
         (0..faults).map(sample).collect()
     });
     thread.join().expect("it ends")
@@ -77,10 +76,13 @@ fn trap(ground: &mut [u8]) -> u64 {
     let mut guarded = Guarded::new(EMPTY, code, 0).expect("a stack");
     guarded.call(Callback::Create, limit, &loss, &mut NoServices);
     guarded.inject(Some(Misbehaviour::Segfault));
-    for line in ground.chunks_mut(64) {
-        line[0] = line[0].wrapping_add(1);
+    for _cycle in 0..CYCLES {
+        for line in ground.chunks_mut(64) {
+            line[0] = line[0].wrapping_add(1);
+        }
+        black_box(&ground);
+        std::thread::sleep(PERIOD);
     }
-    black_box(&ground);
     let ending = guarded.call(Callback::Execute, limit, &loss, &mut NoServices);
     let end = Instant::now();
     assert!(matches!(ending, Ending::Trapped(_)), "{ending:?}");
