@@ -142,10 +142,10 @@ impl Stage {
         bring_up(&mut standby, lane);
         standbys.add(0, Box::new(standby));
         let cell = Arc::clone(&self.executor.members[0].component);
-        if let Some(mut component) = cell.enter(lane.token(), Duration::ZERO) {
-            if component.is_active() || component.operate(Operation::Start, lane.loss()).is_ok() {
-                component.misbehave(misbehaviour);
-            }
+        if let Some(mut component) = cell.enter(lane.token(), Duration::ZERO)
+            && (component.is_active() || component.operate(Operation::Start, lane.loss()).is_ok())
+        {
+            component.misbehave(misbehaviour);
         }
         let now_ns = self.supervisor.environment().clock.now_ns();
         while self.executor.step(now_ns, lane) {

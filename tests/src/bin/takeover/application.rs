@@ -2,7 +2,7 @@
 //! one thread every millisecond.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -24,7 +24,7 @@ pub const PRIORITY: u8 = 50;
 const FIRST_CYCLE: usize = 200;
 
 /// From one fault to the next: on a busy machine it takes some time until there is another standby.
-const EVERY_CYCLES: usize = 16;
+pub const EVERY_CYCLES: usize = 16;
 
 /// One of them.
 #[derive(Debug, Clone, Copy)]
@@ -146,12 +146,49 @@ fn thread_named(name: &str) -> i32 {
 }
 
 fn load(folder: &Path, plan: &Plan) -> Application {
-    let write = |name: &str, text: String| {
-        let path = folder.join(name);
-        std::fs::write(&path, text).expect("a file is written");
-        path
-    };
-    let output = "<data_port><name>output</name><usage>output</usage><data_type>Sample</data_type></data_port>";
+    let profile = write_profiles(folder, plan);
+    let rules = write(
+        folder,
+        "rules.xml",
+        &format!(
+            "<fault_rules application='takeover'><component name='source'>{}</component>\
+             </fault_rules>",
+            plan.rules
+        ),
+    );
+    let injections = write(
+        folder,
+        "injections.xml",
+        &format!(
+            "<fault_injections application='takeover'><inject at_cycle='{FIRST_CYCLE}' \
+             repeat='{}' every_cycles='{EVERY_CYCLES}' component='source' fault='{}'/>\
+             </fault_injections>",
+            plan.faults, plan.fault
+        ),
+    );
+    let options = LoadOptions::default();
+    let loaded = load_application(&profile, &options);
+    let sound = loaded.specification;
+    let specification = sound.unwrap_or_else(|| panic!("{:#?}", loaded.problems));
+    let rules = load_rules(&specification, &[rules], &options);
+    let injected = load_injections(&specification, &injections);
+    let problems = injected.problems;
+    Application {
+        rules: rules
+            .rules
+            .unwrap_or_else(|| panic!("{:#?}", rules.problems)),
+        models: Vec::new(),
+        injections: injected
+            .injections
+            .unwrap_or_else(|| panic!("{problems:#?}")),
+        specification,
+    }
+}
+
+/// The profiles of the components and of the application, whose path is returned.
+fn write_profiles(folder: &Path, plan: &Plan) -> PathBuf {
+    let output = "<data_port><name>output</name><usage>output</usage>\
+                  <data_type>Sample</data_type></data_port>";
     let input = "<data_port><name>input</name><usage>input</usage><data_type>Sample</data_type>\
                  <queueing_policy>FIFO</queueing_policy><queue_size>100</queue_size></data_port>";
     let mut members = String::new();
@@ -161,61 +198,31 @@ fn load(folder: &Path, plan: &Plan) -> Application {
         ("walker", "toiler", output, plan.walks_kib),
     ] {
         let policy = &plan.policy;
-        write(
-            &format!("{name}.xml"),
-            format!(
-                "<component_profile><name>{name}</name>\
-                 <execution_environment><library_name>{library}</library_name></execution_environment>\
-                 <execution_semantics><type>periodic-shared</type><period>1</period>\
-                 <priority>{PRIORITY}</priority><policy>{policy}</policy></execution_semantics>\
-                 <properties><property name='walks_kib'>{walks_kib}</property></properties>\
-                 <ports>{ports}</ports></component_profile>"
-            ),
+        let text = format!(
+            "<component_profile><name>{name}</name>\
+             <execution_environment><library_name>{library}</library_name></execution_environment>\
+             <execution_semantics><type>periodic-shared</type><period>1</period>\
+             <priority>{PRIORITY}</priority><policy>{policy}</policy></execution_semantics>\
+             <properties><property name='walks_kib'>{walks_kib}</property></properties>\
+             <ports>{ports}</ports></component_profile>"
         );
+        write(folder, &format!("{name}.xml"), &text);
         members += &format!(
             "<subcomponent><name>{name}</name><reference>{name}.xml</reference></subcomponent>"
         );
     }
-    let profile = write(
-        "application.xml",
-        format!(
-            "<package_profile><name>takeover</name><subcomponents>{members}</subcomponents>\
-             <port_connections><port_connection port_type='data'>\
-             <source component_name='source' port_name='output'/>\
-             <target component_name='sink' port_name='input'/></port_connection></port_connections>\
-             </package_profile>"
-        ),
+    let text = format!(
+        "<package_profile><name>takeover</name><subcomponents>{members}</subcomponents>\
+         <port_connections><port_connection port_type='data'>\
+         <source component_name='source' port_name='output'/>\
+         <target component_name='sink' port_name='input'/></port_connection></port_connections>\
+         </package_profile>"
     );
-    let rules = write(
-        "rules.xml",
-        format!(
-            "<fault_rules application='takeover'><component name='source'>{}</component></fault_rules>",
-            plan.rules
-        ),
-    );
-    let injections = write(
-        "injections.xml",
-        format!(
-            "<fault_injections application='takeover'><inject at_cycle='{FIRST_CYCLE}' repeat='{}' \
-             every_cycles='{EVERY_CYCLES}' component='source' fault='{}'/></fault_injections>",
-            plan.faults, plan.fault
-        ),
-    );
-    let options = LoadOptions::default();
-    let loaded = load_application(&profile, &options);
-    let specification = loaded
-        .specification
-        .unwrap_or_else(|| panic!("{:#?}", loaded.problems));
-    let rules = load_rules(&specification, &[rules], &options);
-    let injected = load_injections(&specification, &injections);
-    Application {
-        rules: rules
-            .rules
-            .unwrap_or_else(|| panic!("{:#?}", rules.problems)),
-        models: Vec::new(),
-        injections: injected
-            .injections
-            .unwrap_or_else(|| panic!("{:#?}", injected.problems)),
-        specification,
-    }
+    write(folder, "application.xml", &text)
+}
+
+fn write(folder: &Path, name: &str, text: &str) -> PathBuf {
+    let path = folder.join(name);
+    std::fs::write(&path, text).expect("a file is written");
+    path
 }

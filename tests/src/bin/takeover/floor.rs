@@ -15,11 +15,11 @@ use thread_priority::{
 };
 
 use super::Plan;
-use super::application::PRIORITY;
+use super::application::{EVERY_CYCLES, PRIORITY};
 
 /// Cycles before each fault, in which the thread does as the application's does: it works and sleeps,
 /// and others have the processor meanwhile.
-const CYCLES: usize = 4;
+const CYCLES: usize = EVERY_CYCLES;
 const PERIOD: Duration = Duration::from_millis(1);
 
 const EMPTY: Callbacks = Callbacks {
