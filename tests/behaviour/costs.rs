@@ -39,6 +39,28 @@ fn ten_thousand_faults_leave_only_the_abandoned_instances() {
     assert!(growth < bound, "{growth} KiB of at most {bound}: {figures}");
 }
 
+/// A takeover by a standby: what is still allocated and freed from the fault to the successor's first
+/// completed callback is what the fault manager and the event log keep of it (names, texts, the
+/// symptom), each in a piece of its own. Nothing is loaded.
+#[test]
+fn a_takeover_allocates_only_what_is_kept_of_it() {
+    const MOST: u64 = 44;
+    const RULES: &str = "<resurrect><reset>true</reset><backup>1</backup></resurrect>\
+                         <fault window='100ms'><retry_max>100</retry_max></fault>";
+    for preload in ["loaded", "warm"] {
+        let rules = format!("<standby preload='{preload}'/>{RULES}");
+        let mut takeover = Command::new(env!("CARGO_BIN_EXE_takeover"));
+        takeover
+            .arg(artifacts())
+            .args([rules.as_str(), "segfault", "20", "SCHED_OTHER", "64"]);
+        let text = printed(&mut takeover);
+        let figures: Value = serde_json::from_str(&text).expect("it prints JSON");
+        let by = format!("by a {preload} standby");
+        let allocations = figures["takeovers"][&by]["allocations"].as_u64();
+        assert!(allocations.is_some_and(|it| it <= MOST), "{figures}");
+    }
+}
+
 /// Data through every kind of queue, events, calls, checkpoints and their way to the disk: the container
 /// allocates nothing for them.
 #[test]

@@ -4,6 +4,8 @@
 mod backtraces;
 mod bad_files;
 mod bad_libraries;
+mod bench;
+mod bench_overhead;
 mod c_component;
 mod clocks;
 mod control;
@@ -27,5 +29,6 @@ mod scenarios;
 mod services;
 mod several_applications;
 mod stopping;
+mod supervised;
 mod tidy;
 mod two_cameras;

@@ -5,6 +5,7 @@ mod data;
 mod ending;
 mod ladder;
 mod real_time;
+mod standby;
 
 use tests::{Application, Member, Outcome};
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use serde_json::Value;
-use tests::{Application, Outcome, repository};
+use tests::{Application, Outcome, repository, take_turn};
 
 /// The slowest of the seeds below needs 45 s of robot time.
 const LIMIT: &str = "120s";
@@ -54,6 +54,7 @@ fn the_same_seed_gives_the_same_events_and_another_seed_others() {
 
 #[test]
 fn in_real_time_it_drives_over_a_pseudo_terminal() {
+    let _turn = take_turn();
     // A seed whose target is near, so that the test takes a quarter of a minute.
     let outcome = drive(&Application::new(), "real", 17);
     assert_eq!(robot(&outcome)["reached"], true, "{}", robot(&outcome));

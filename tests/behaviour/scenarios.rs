@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use serde_json::Value;
-use tests::{Application, Outcome, repository};
+use tests::{Application, Outcome, repository, take_turn};
 
 /// The slowest drive with three sonars needs 100 s of robot time.
 const LIMIT: &str = "150s";
@@ -248,6 +248,7 @@ fn a_hanging_component_is_found_by_its_heartbeat() {
 /// One after the other: the machine has other tests to run meanwhile.
 #[test]
 fn in_real_time() {
+    let _turn = take_turn();
     for scenario in [
         UNPLUGGED_SONAR,
         CRASH_RESTORED_BY_RESET,

@@ -272,6 +272,11 @@ impl Application {
 
     /// Starts these files in one container.
     pub fn start_files(&self, files: &[PathBuf], arguments: &[&str]) -> Watched {
+        Watched::spawn(&mut self.command(files, arguments))
+    }
+
+    /// What starts these files in one container.
+    pub fn command(&self, files: &[PathBuf], arguments: &[&str]) -> Command {
         let mut command = Command::new(artifacts().join("steadfast"));
         command
             .arg("run")
@@ -285,7 +290,12 @@ impl Application {
             .env("XDG_STATE_HOME", self.folder().join("state"))
             .env_remove("STATE_DIRECTORY")
             .env_remove("STEADFAST_LIBRARY_PATH");
-        Watched::spawn(&mut command)
+        command
+    }
+
+    /// The event file as it is now.
+    pub fn events_so_far(&self) -> String {
+        std::fs::read_to_string(self.folder().join(EVENTS)).unwrap_or_default()
     }
 
     /// An operator beside the run.

@@ -10,6 +10,8 @@ mod hosts;
 mod member;
 mod operator;
 mod outcome;
+mod supervised;
+mod turn;
 mod watchdog;
 
 pub use application::Application;
@@ -19,4 +21,6 @@ pub use hosts::{Host, processes_that_mention, zombies};
 pub use member::Member;
 pub use operator::Operator;
 pub use outcome::Outcome;
+pub use supervised::Supervised;
+pub use turn::take_turn;
 pub use watchdog::{Finished, Watched, repository, until};

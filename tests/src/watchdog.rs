@@ -85,14 +85,21 @@ impl Watched {
         }
     }
 
+    /// Its number.
+    ///
+    /// # Panics
+    /// If the system has none for it.
+    pub fn id(&self) -> Pid {
+        let id = i32::try_from(self.child.id()).expect("process ids are small");
+        Pid::from_raw(id).expect("a child's id is not 0")
+    }
+
     /// Sends a signal.
     ///
     /// # Panics
     /// If the child is gone.
     pub fn signal(&self, signal: Signal) {
-        let id = i32::try_from(self.child.id()).expect("process ids are small");
-        let id = Pid::from_raw(id).expect("a child's id is not 0");
-        kill_process(id, signal).expect("the child runs");
+        kill_process(self.id(), signal).expect("the child runs");
     }
 
     /// The processes that it runs components in.

@@ -12,7 +12,7 @@ mod secondary;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use system_model::rules::{FaultRules, IsolationTier, Preload};
+use system_model::rules::{ComponentRules, FaultRules, IsolationTier, Preload};
 use system_model::specification::{
     ApplicationSpecification, ComponentSpecification, Place, PortKind,
 };
@@ -126,7 +126,12 @@ pub fn assemble_together(
     if !problems.is_empty() {
         return Err(problems);
     }
-    let hosts = Hosts::new(options.executable.as_deref());
+    let in_hosts = |rules: &ComponentRules| {
+        let isolation = rules.isolation.as_ref();
+        isolation.is_some_and(|rule| rule.value.tier == IsolationTier::Process)
+    };
+    let wanted = rules.components.iter().any(in_hosts);
+    let hosts = Hosts::new(options.executable.as_deref().filter(|_| wanted));
     let factories = factories(
         specification,
         rules,
@@ -184,7 +189,7 @@ fn secondaries<'rules>(
     (0..specification.components.len())
         .map(|index| {
             let candidates = of(index).iter().filter_map(|rule| {
-                let library = libraries.load(&rule.specification)?;
+                let library = libraries.look_at(&rule.specification)?;
                 Some(secondary::Candidate { rule, library })
             });
             candidates.collect()
@@ -203,11 +208,13 @@ fn factories(
     let components = specification.components.iter().zip(primaries);
     let all = components.zip(secondaries).enumerate();
     all.map(|(number, ((component, library), secondaries))| {
+        let rules = rules.components.get(number).cloned().unwrap_or_default();
+        let standby = rules.standby.as_ref().map(|rule| rule.value);
         let mut variants = vec![Variant {
             specification: component.clone(),
             path: library.path.clone(),
             description: library.description.clone(),
-            preload: Preload::Cold,
+            preload: standby.unwrap_or(Preload::Cold),
         }];
         variants.extend(secondaries.into_iter().map(|candidate| Variant {
             specification: candidate.rule.specification.clone(),
@@ -215,7 +222,6 @@ fn factories(
             description: candidate.library.description,
             preload: candidate.rule.preload,
         }));
-        let rules = rules.components.get(number).cloned().unwrap_or_default();
         let environment = Arc::clone(environment);
         Arc::new(Factory::new(
             number,

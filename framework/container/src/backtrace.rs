@@ -9,6 +9,7 @@ mod unwind;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::guard::{LoadedObject, Registers};
+use crate::library::whole;
 
 use names::Names;
 use unwind::call_chain;
@@ -39,7 +40,7 @@ fn lines(
     registers: &Registers,
     stack: impl Fn(usize) -> Option<usize>,
 ) -> Vec<String> {
-    let Ok(content) = std::fs::read(&library.file) else {
+    let Ok(content) = std::fs::read(whole(&library.file)) else {
         return Vec::new();
     };
     let names = Names::of(&content);

@@ -15,7 +15,13 @@ pub enum Clock {
 impl Clock {
     /// A real clock that starts now.
     pub fn real() -> Self {
-        Self::Real(Instant::now())
+        Self::real_since(Duration::ZERO)
+    }
+
+    /// A real clock that started so long ago.
+    pub fn real_since(ago: Duration) -> Self {
+        let now = Instant::now();
+        Self::Real(now.checked_sub(ago).unwrap_or(now))
     }
 
     /// A simulated clock at zero.
@@ -33,6 +39,14 @@ impl Clock {
         match self {
             Self::Real(start) => u64::try_from(start.elapsed().as_nanos()).unwrap_or(u64::MAX),
             Self::Simulated(now) => now.load(Ordering::Relaxed),
+        }
+    }
+
+    /// The time at an instant of the machine's clock; none where time is simulated.
+    pub fn at_ns(&self, instant: Instant) -> Option<u64> {
+        match self {
+            Self::Real(start) => Some(nanoseconds(instant.saturating_duration_since(*start))),
+            Self::Simulated(_) => None,
         }
     }
 

@@ -5,3 +5,4 @@ pub mod check;
 pub mod fault;
 pub mod problems;
 pub mod run;
+pub mod world;

@@ -9,6 +9,7 @@ mod judgement;
 mod limits;
 mod messages;
 mod port_end;
+mod restored;
 mod services;
 mod succession;
 mod tap;
@@ -36,6 +37,7 @@ pub use limits::CallLimits;
 pub use port_end::{
     BoundMethod, Calls, DataInput, DataOutput, EventOutput, Inbox, PortEnd, Provider,
 };
+pub use restored::Restored;
 pub use services::{Detectors, Environment, Services};
 pub use tap::{InputTap, OutputTap, SafeDatum, VotedInput, VotingSource, Watch};
 
@@ -291,6 +293,8 @@ impl Component {
     #[cold]
     pub fn prove(&mut self) {
         self.unproven = false;
+        let now_ns = self.services.environment().clock.now_ns();
+        self.status.set_works_since_ns(now_ns);
         if let Some(component) = self.services.detectors().map(|all| all.component) {
             self.services
                 .environment()

@@ -11,7 +11,7 @@ pub mod protocol;
 mod running;
 mod server;
 
-pub use folder::{ControlError, RunningApplication, running};
+pub use folder::{ControlError, RunningApplication, remove_sockets_of_the_dead, running};
 pub use protocol::{Answer, Request};
 pub use running::RunningSystem;
 pub use server::{Limits, Server};

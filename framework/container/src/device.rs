@@ -96,6 +96,11 @@ impl OpenDevice {
         self.descriptor.as_raw_fd()
     }
 
+    /// The descriptor, for the container's own use.
+    pub fn into_descriptor(self) -> OwnedFd {
+        self.descriptor
+    }
+
     /// The component owns the descriptor from now on.
     pub fn give_away(self) {
         let _now_theirs = self.descriptor.into_raw_fd();

@@ -1,16 +1,21 @@
 //! The event log: everything that happened, one JSON object a line, written by a thread of its own.
 
+mod unfinished;
+
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use crossbeam::channel::{Receiver, RecvTimeoutError, Sender, TrySendError, bounded};
+use crossbeam::channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, TrySendError, bounded};
 use fault_manager::Verdict;
 use serde::Serialize;
 use system_model::fault::Fault;
+use unfinished::open_at_end;
+
+use crate::outer_supervision::ContainerRestart;
 
 /// Events that may wait for the writer: more than a robot of a hundred components makes in a
 /// second when all of them fail.
@@ -18,6 +23,11 @@ const QUEUE: usize = 8192;
 
 /// Written lines reach the file at least this often, so that a person can watch it grow.
 const FLUSH_PERIOD: Duration = Duration::from_millis(200);
+
+/// How often the writer looks for events where nobody waits for it. It does not sleep on the queue:
+/// whoever records an event would have to wake it, and may be a component's executor in the middle
+/// of a recovery. A hundredth of what the queue holds comes in this time.
+const LOOK_PERIOD: Duration = Duration::from_millis(10);
 
 /// Something that happened.
 #[derive(Debug, Clone, Serialize)]
@@ -118,6 +128,17 @@ pub enum Event {
         /// What it is.
         message: String,
     },
+    /// The container has died and was restarted by its parent; recorded once it runs again.
+    ContainerRestarted(Box<ContainerRestart>),
+    /// The container has died once too often: its parent will not restart it.
+    ContainerGivenUp {
+        /// How many restarts there have been in this run.
+        restarts: u32,
+        /// What was seen last.
+        seen: String,
+        /// Why it was judged so.
+        judged: String,
+    },
     /// The robot has reached its target.
     TargetReached {
         /// Robot time in seconds.
@@ -163,7 +184,6 @@ pub struct EventLog {
     sender: Sender<Option<Line>>,
     waits: bool,
     lost: AtomicU64,
-    echo: Option<Sender<(u64, Event)>>,
 }
 
 /// The thread that writes; to be closed when all has been said.
@@ -183,26 +203,56 @@ impl EventLog {
         waits: bool,
         echo: Option<Sender<(u64, Event)>>,
     ) -> io::Result<(Self, EventWriter)> {
-        let file = path.map(File::create).transpose()?;
+        Self::write_to(path.map(File::create).transpose()?, waits, echo)
+    }
+
+    /// As [`EventLog::open`], but goes on in the file where a container that died has ended. The half
+    /// line that such a one may leave is taken out.
+    ///
+    /// # Errors
+    /// If the file cannot be opened.
+    pub fn resume(
+        path: Option<&Path>,
+        waits: bool,
+        echo: Option<Sender<(u64, Event)>>,
+    ) -> io::Result<(Self, EventWriter)> {
+        Self::write_to(path.map(open_at_end).transpose()?, waits, echo)
+    }
+
+    fn write_to(
+        file: Option<File>,
+        waits: bool,
+        echo: Option<Sender<(u64, Event)>>,
+    ) -> io::Result<(Self, EventWriter)> {
         let (sender, receiver) = bounded(QUEUE);
         let thread = std::thread::Builder::new()
             .name("event-log".to_owned())
-            .spawn(move || write_all(&receiver, file))?;
+            .spawn(move || {
+                let target = Target {
+                    output: file.map(BufWriter::new),
+                    echo,
+                };
+                write_all(&receiver, target, waits)
+            })?;
         let log = Self {
             sender,
             waits,
             lost: AtomicU64::new(0),
-            echo,
         };
         Ok((log, EventWriter { thread }))
     }
 
+    /// A log that nobody writes: events are lost.
+    pub fn nowhere() -> Self {
+        Self {
+            sender: bounded(0).0,
+            waits: false,
+            lost: AtomicU64::new(0),
+        }
+    }
+
     /// Records an event at a time of the application's clock.
     pub fn record(&self, t_ns: u64, event: Event) {
-        if let Some(echo) = &self.echo {
-            // The person's view may lag; the file is the record.
-            let _lagging = echo.try_send((t_ns, event.clone()));
-        }
         let line = Some(Line { t_ns, event });
         if self.waits {
             // Fails only when the writer has ended, after which nobody reads.
@@ -237,24 +287,56 @@ impl EventWriter {
     }
 }
 
-fn write_all(receiver: &Receiver<Option<Line>>, file: Option<File>) -> io::Result<()> {
-    let mut output = file.map(BufWriter::new);
+/// Where the writer puts events.
+struct Target {
+    output: Option<BufWriter<File>>,
+    echo: Option<Sender<(u64, Event)>>,
+}
+
+impl Target {
+    fn write(&mut self, line: Line) -> io::Result<()> {
+        if let Some(output) = &mut self.output {
+            serde_json::to_writer(&mut *output, &line)?;
+            output.write_all(b"\n")?;
+        }
+        if let Some(echo) = &self.echo {
+            // The person's view may lag; the file is the record.
+            let _lagging = echo.try_send((line.t_ns, line.event));
+        }
+        Ok(())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.output.as_mut().map_or(Ok(()), Write::flush)
+    }
+}
+
+/// Writes until the end is said. Who records waits for room where `waits`, and is waited for.
+fn write_all(receiver: &Receiver<Option<Line>>, mut target: Target, waits: bool) -> io::Result<()> {
+    let mut flushed = Instant::now();
     loop {
-        match receiver.recv_timeout(FLUSH_PERIOD) {
-            Ok(Some(line)) => {
-                if let Some(output) = &mut output {
-                    serde_json::to_writer(&mut *output, &line)?;
-                    output.write_all(b"\n")?;
+        let received = if waits {
+            receiver
+                .recv_timeout(FLUSH_PERIOD)
+                .map_err(|error| match error {
+                    RecvTimeoutError::Timeout => TryRecvError::Empty,
+                    RecvTimeoutError::Disconnected => TryRecvError::Disconnected,
+                })
+        } else {
+            receiver.try_recv()
+        };
+        match received {
+            Ok(Some(line)) => target.write(line)?,
+            Err(TryRecvError::Empty) => {
+                if flushed.elapsed() >= FLUSH_PERIOD {
+                    target.flush()?;
+                    flushed = Instant::now();
+                }
+                if !waits {
+                    std::thread::sleep(LOOK_PERIOD);
                 }
             }
-            Err(RecvTimeoutError::Timeout) => {
-                if let Some(output) = &mut output {
-                    output.flush()?;
-                }
-            }
-            Ok(None) | Err(RecvTimeoutError::Disconnected) => {
-                return output.map_or(Ok(()), |mut output| output.flush());
-            }
+            Ok(None) | Err(TryRecvError::Disconnected) => return target.flush(),
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::component::{ComponentCell, mark_lost};
 use crate::guard::CallLimit;
 use crate::guard::loss::LostThread;
 use crate::lane::Lane;
-use crate::supervision::obedience::{self, Afterwards};
+use crate::supervision::obedience;
 use crate::supervision::{Orders, Supervisor};
 use crate::wake::Wake;
 
@@ -120,23 +120,27 @@ impl Executor {
     pub fn obey(&mut self, supervisor: &Supervisor, lane: &Lane) {
         while let Some(order) = self.orders.take() {
             self.orders.hurry(CallLimit::NONE);
-            let member = self
-                .members
-                .iter()
-                .find(|member| usize::try_from(member.number) == Ok(order.component));
-            let Some(member) = member else { continue };
-            let (cell, kind) = (Arc::clone(&member.component), self.kind);
+            let is_meant = |member: &Member| usize::try_from(member.number) == Ok(order.component);
+            let Some(index) = self.members.iter().position(is_meant) else {
+                continue;
+            };
+            let cell = Arc::clone(&self.members[index].component);
+            let updates = !self.will_update(index);
             self.obeying = order.action;
-            let afterwards = obedience::obey(&order, &cell, supervisor, lane);
+            let recovered = obedience::obey(&order, &cell, self.kind, updates, supervisor, lane);
             self.obeying = None;
-            if let Afterwards::Recovered { at_once } = afterwards {
-                obedience::work_at_once(&cell, kind, at_once, supervisor, lane);
+            if recovered {
                 self.prepares = true;
                 obedience::refill(order.component, supervisor, lane);
                 self.prepares = false;
             }
             supervisor.attend();
         }
+    }
+
+    /// Whether the update of this member is still to come in the cycle under way.
+    fn will_update(&self, index: usize) -> bool {
+        self.is_in_cycle() && self.step <= self.members.len() + index
     }
 
     /// The thread was lost inside components of these: they are in ERROR. In an order that is the

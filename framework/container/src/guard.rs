@@ -12,6 +12,7 @@
 #![allow(unsafe_code)] // the whole point: foreign code, stacks, signals
 
 mod allocation;
+mod bare_trap;
 mod callback;
 mod code;
 mod copy;
@@ -36,10 +37,12 @@ use std::hint::black_box;
 use std::io;
 use std::mem;
 use std::ptr;
+use std::time::Instant;
 
 use component_abi::Callbacks;
 use corosensei::{Coroutine, CoroutineResult};
 
+pub use bare_trap::BareTrap;
 pub use callback::{Callback, Ending, ServiceCall};
 pub use code::{CodeRange, LoadedObject};
 pub use foreign::{ForeignBytes, ForeignBytesMut, ForeignText};
@@ -216,6 +219,17 @@ impl Guarded {
     /// that back. It happens once.
     pub fn inject(&mut self, misbehaviour: Option<Misbehaviour>) {
         self.side.set_injection(misbehaviour);
+    }
+
+    /// Sees to it that the first callbacks need not wait for pages of its stack and its code.
+    pub fn touch_memory(&self) {
+        self.side.stack().touch();
+        self.frame.code.touch();
+    }
+
+    /// When it misbehaved last as it was made to, just before that: what benchmarks count from.
+    pub fn misbehaved(&self) -> Option<Instant> {
+        self.side.misbehaved.get()
     }
 
     /// From now on what callbacks allocate and do not free is counted.

@@ -4,10 +4,12 @@
 mod distortion;
 mod running;
 mod schedule;
+mod still_to_come;
 
 pub use distortion::{DistortionError, Passage, PortDistortion};
 pub use running::{Changed, InjectionError, Injections};
 pub use schedule::{Change, Schedule, TooManyInjections};
+pub use still_to_come::still_to_come;
 
 use rand_pcg::Pcg64;
 

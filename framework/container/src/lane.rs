@@ -8,11 +8,12 @@
 use std::cell::{RefCell, UnsafeCell};
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
-use std::sync::{Arc, Condvar, Mutex, PoisonError, TryLockError};
+use std::sync::{Arc, Condvar, Mutex, OnceLock, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
 
 use crate::guard::Guarded;
 use crate::guard::loss::{Loss, LostThread, losses, wait_for_loss, wake_spare};
+use crate::scheduling::{be_ordinary, outrank_components};
 use crate::watchdog;
 
 /// The token under which components are entered while they are assembled, before any lane runs.
@@ -41,6 +42,8 @@ pub struct Lane {
     stopping: AtomicBool,
     waker: Option<Arc<crate::wake::Wake>>,
     work: UnsafeCell<Box<dyn Work>>,
+    /// What a thread does first that works for it.
+    prepare: OnceLock<Box<dyn Fn() + Send + Sync>>,
     done: Mutex<bool>,
     done_changed: Condvar,
 }
@@ -69,6 +72,7 @@ impl Lane {
             stopping: AtomicBool::new(false),
             waker: work.waker(),
             work: UnsafeCell::new(work),
+            prepare: OnceLock::new(),
             done: Mutex::new(false),
             done_changed: Condvar::new(),
         })
@@ -121,6 +125,9 @@ impl Lane {
 
     /// Works on the calling thread.
     fn drive(self: &Arc<Self>, lost: Option<&LostThread>) {
+        if let Some(prepare) = self.prepare.get() {
+            prepare();
+        }
         self.loss.watch().attach();
         CURRENT.set(Some(Arc::clone(self)));
         // SAFETY: this thread is the lane's only one; see the `Sync` argument.
@@ -163,15 +170,18 @@ impl Crew {
         Ok(crew)
     }
 
-    /// Starts a lane on a thread of its own. `prepare` runs first on that thread (priorities).
+    /// Starts a lane on a thread of its own. `prepare` runs first on that thread, and on every one
+    /// that takes over from it (priorities).
     ///
     /// # Errors
     /// If the system refuses the thread.
     pub fn start(
         self: &Arc<Self>,
         lane: &Arc<Lane>,
-        prepare: impl FnOnce() + Send + 'static,
+        prepare: impl Fn() + Send + Sync + 'static,
     ) -> io::Result<()> {
+        // A lane is started once.
+        let _prepared_before = lane.prepare.set(Box::new(prepare));
         let mut lanes = self.lanes();
         lanes.retain(|lane| !lane.is_done());
         lanes.push(Arc::clone(lane));
@@ -180,12 +190,9 @@ impl Crew {
         let lane = Arc::clone(lane);
         std::thread::Builder::new()
             .name(lane.name.clone())
-            .spawn(move || {
-                prepare();
-                match Guarded::prepare_thread() {
-                    Ok(()) => lane.drive(None),
-                    Err(_refused) => lane.stop(),
-                }
+            .spawn(move || match Guarded::prepare_thread() {
+                Ok(()) => lane.drive(None),
+                Err(_refused) => lane.stop(),
             })?;
         Ok(())
     }
@@ -229,6 +236,9 @@ impl Crew {
             .name("spare".to_owned())
             .spawn(move || {
                 if Guarded::prepare_thread().is_ok() {
+                    // A lane that is lost may be of any priority; whoever takes it over has its
+                    // own from then on.
+                    outrank_components();
                     crew.stand_by();
                 }
             })?;
@@ -246,6 +256,8 @@ impl Crew {
             if let Some((lane, lost)) = lost {
                 // Without another spare the next loss ends its lane; this one still goes on.
                 let _no_more_spares = self.spawn_spare();
+                // If that were refused, the lane would only run too soon.
+                let _keeps_its_rank = be_ordinary();
                 lane.drive(Some(&lost));
                 return;
             }

@@ -6,9 +6,11 @@
 
 pub mod assembly;
 pub mod backtrace;
+pub mod bare_wake;
 pub mod clock;
 pub mod component;
 pub mod control;
+pub mod descriptor_line;
 pub mod device;
 pub mod event_log;
 pub mod executor;
@@ -17,9 +19,11 @@ pub mod host;
 pub mod injection;
 pub mod lane;
 pub mod library;
+pub mod outer_supervision;
 pub mod persistence;
 pub mod port;
 pub mod schedule;
+mod scheduling;
 pub mod status;
 pub mod summary;
 pub mod supervision;

@@ -1,11 +1,13 @@
 //! Component libraries: found by the names that profiles use, loaded as private copies, checked
 //! before anything in them runs.
 
+mod copy;
 mod description;
 mod load;
 mod probe;
 mod search;
 
+pub(crate) use copy::whole;
 pub use description::{ComponentDescription, MethodDescription, PortDescription};
 pub use load::LoadedLibrary;
 pub use probe::{probe, probe_main};

@@ -12,6 +12,7 @@ use commands::bench::{self, BenchArguments};
 use commands::check::{self, CheckArguments};
 use commands::fault::{self, FaultArguments};
 use commands::run::{self, RunArguments};
+use commands::world::{self, WorldArguments};
 
 /// Fault tolerance for component-based robots, declared in XML.
 #[derive(Debug, Parser)]
@@ -26,7 +27,7 @@ enum Command {
     /// Check profiles: every problem with its place and what to do about it.
     Check(CheckArguments),
     /// Run one application, or several in one container.
-    Run(RunArguments),
+    Run(Box<RunArguments>),
     /// List, show, clear and inject faults of a running application.
     Fault(FaultArguments),
     /// Measure how good Steadfast is at what it does.
@@ -34,6 +35,9 @@ enum Command {
     /// Run components for a container, as it says on the standard input.
     #[command(hide = true)]
     Host,
+    /// Be the simulated world of a supervised run.
+    #[command(hide = true)]
+    World(WorldArguments),
     /// Load a library and say by the exit code whether that works.
     #[command(hide = true)]
     ProbeLibrary {
@@ -49,6 +53,7 @@ fn main() -> ExitCode {
         Command::Fault(arguments) => fault::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Host => container::host::host_main(),
+        Command::World(arguments) => world::run(&arguments),
         Command::ProbeLibrary { path } => container::library::probe_main(&path),
     }
 }

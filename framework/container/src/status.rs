@@ -24,6 +24,10 @@ pub struct ComponentStatus {
     allocated_bytes: AtomicU64,
     /// Until when it is in a callback that hangs, in nanoseconds of a simulated clock.
     hangs_until_ns: AtomicU64,
+    /// When an injected misbehaviour acted last, and when the component had completed its first
+    /// cycle after its last recovery, in nanoseconds of the container's clock; 0: never.
+    misbehaved_ns: AtomicU64,
+    works_since_ns: AtomicU64,
 }
 
 const STATES: [LifeCycleState; 6] = [
@@ -50,6 +54,8 @@ impl ComponentStatus {
             standby: false,
             allocated_bytes: AtomicU64::new(0),
             hangs_until_ns: AtomicU64::new(0),
+            misbehaved_ns: AtomicU64::new(0),
+            works_since_ns: AtomicU64::new(0),
         }
     }
 
@@ -103,6 +109,26 @@ impl ComponentStatus {
 
     pub(crate) fn set_hanging_until(&self, until_ns: u64) {
         self.hangs_until_ns.store(until_ns, Ordering::Relaxed);
+    }
+
+    /// When an injected misbehaviour that ended or failed a callback acted last, taken on the
+    /// component's stack just before it did, in nanoseconds of the container's clock; 0: never.
+    pub fn misbehaved_ns(&self) -> u64 {
+        self.misbehaved_ns.load(Ordering::Acquire)
+    }
+
+    pub(crate) fn set_misbehaved_ns(&self, time_ns: u64) {
+        self.misbehaved_ns.store(time_ns, Ordering::Release);
+    }
+
+    /// When the first cycle after the last recovery was completed (its `onExecute` had returned), in
+    /// nanoseconds of the container's clock; 0: it was never recovered.
+    pub fn works_since_ns(&self) -> u64 {
+        self.works_since_ns.load(Ordering::Acquire)
+    }
+
+    pub(crate) fn set_works_since_ns(&self, time_ns: u64) {
+        self.works_since_ns.store(time_ns, Ordering::Release);
     }
 
     pub(crate) fn set_incarnation(&self, incarnation: u32) {

@@ -16,6 +16,8 @@ pub struct Summary {
     pub applications: BTreeMap<String, ApplicationSummary>,
     /// By instance name.
     pub components: BTreeMap<String, ComponentSummary>,
+    /// How often the container was restarted by the parent that supervises it.
+    pub restarts: u32,
     /// The robot of the simulated world, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub robot: Option<RobotSummary>,

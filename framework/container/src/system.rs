@@ -20,7 +20,7 @@ use system_model::specification::ApplicationSpecification;
 use crate::assembly::{Assembly, assemble_together};
 use crate::component::{ComponentCell, Environment};
 use crate::control::RunningSystem;
-use crate::event_log::{Event, EventLog, EventWriter};
+use crate::event_log::{Event, EventWriter};
 use crate::lane::{Crew, Lane, remaining};
 use crate::library::PortDescription;
 use crate::status::ComponentStatus;
@@ -81,15 +81,14 @@ impl System {
         mut options: RunOptions,
     ) -> Result<Self, StartError> {
         let real = options.clock == ClockKind::Real;
-        let world = simulation.map(|simulation| Arc::new(World::new(simulation, real)));
-        let (events, writer) =
-            EventLog::open(options.events.as_deref(), !real, options.echo.take()).map_err(
-                |error| StartError::Output {
-                    path: options.events.clone().unwrap_or_default(),
-                    error,
-                },
-            )?;
-        let environment = Arc::new(options.clock.environment(events, world.clone()));
+        let supervised = options.supervised.clone();
+        let outside = supervised.as_ref().and_then(|it| it.world().cloned());
+        let world = outside.or_else(|| simulation.map(|it| Arc::new(World::new(it, real))));
+        let (events, writer) = options.open_events()?;
+        let run_time = supervised.as_ref().map(|it| it.run_time());
+        let environment =
+            (options.clock).environment(events, world.clone(), run_time.unwrap_or_default());
+        let environment = Arc::new(environment);
         let applications = Applications::new(applications);
         let specification = &applications.specification;
         let assembly = assemble_together(
@@ -102,7 +101,8 @@ impl System {
         .map_err(StartError::Assembly)?;
         let names = specification.components.iter().map(|it| it.name.clone());
         environment.injections.prepare(names, options.seed);
-        inject(&applications.injections, &assembly, &environment).map_err(StartError::Assembly)?;
+        let injections = options.injections(&applications.injections);
+        inject(&injections, &assembly, &environment).map_err(StartError::Assembly)?;
         let (supervisor, wanted) =
             supervise(&applications, &assembly, &environment).map_err(StartError::Assembly)?;
         let persistence = Persistence::new(&applications, &assembly.factories);
@@ -141,6 +141,9 @@ impl System {
             system.persistence = Persistence::default();
             let _nothing_to_sum_up = system.stop("start_refused");
             return Err(error);
+        }
+        if let Some(restarted) = supervised.and_then(|it| it.runs()) {
+            system.record(restarted);
         }
         Ok(system)
     }
@@ -242,12 +245,14 @@ impl System {
     }
 
     fn notice(&self, message: &str) {
-        self.environment.events.record(
-            self.environment.clock.now_ns(),
-            Event::Notice {
-                message: message.to_owned(),
-            },
-        );
+        self.record(Event::Notice {
+            message: message.to_owned(),
+        });
+    }
+
+    fn record(&self, event: Event) {
+        let now_ns = self.environment.clock.now_ns();
+        self.environment.events.record(now_ns, event);
     }
 
     fn is_over(&self) -> bool {
@@ -293,6 +298,7 @@ impl System {
                 .iter()
                 .map(|status| (status.name.clone(), ComponentSummary::of(status)))
                 .collect(),
+            restarts: (self.options.supervised.as_ref()).map_or(0, |it| it.restarts()),
             robot: self.world.as_ref().map(|world| world.summary()),
         }
     }

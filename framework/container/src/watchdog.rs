@@ -8,23 +8,18 @@
 mod record;
 mod thread_time;
 
-use std::num::NonZeroU64;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use thread_priority::{
-    RealtimeThreadSchedulePolicy, ThreadPriority, ThreadSchedulePolicy,
-    set_thread_priority_and_policy, thread_native_id,
-};
-
 use crate::guard::interrupt;
 use crate::lane::{Crew, Lane};
+use crate::scheduling::outrank_components;
 
 use record::{Record, Verdict};
 
 /// A callback that is to be broken off is tried again after this time, and no look comes sooner
 /// after another: two looks cost a few microseconds a lane, which is below 1 % of it.
-const TICK: Duration = Duration::from_millis(1);
+pub(crate) const TICK: Duration = Duration::from_millis(1);
 
 /// The longest time between looks. It adds to the time in which a hang is found, and is below the
 /// deadline of a component that runs every 2 ms and has the default of three periods.
@@ -96,13 +91,4 @@ fn take_over(watched: &mut Vec<Watched>, lanes: &[Arc<Lane>]) {
             });
         }
     }
-}
-
-/// Asks for the highest real-time priority that is permitted. Without any a hang is found later on
-/// a busy machine, which is all that can be done about it.
-fn outrank_components() {
-    let fifo = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
-    let _found_later =
-        set_thread_priority_and_policy(thread_native_id(), ThreadPriority::Max, fifo);
-    let _found_later = rustix::thread::set_current_timer_slack(NonZeroU64::new(1));
 }

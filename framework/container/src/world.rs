@@ -1,4 +1,9 @@
-//! The simulated world as the container hosts it: moved by the schedule, opened by components.
+//! The simulated world as the container hosts it: moved by the schedule, opened by components. The
+//! world of a supervised container is another process, which outlives it.
+
+mod process;
+mod protocol;
+mod remote;
 
 use std::fmt;
 use std::io;
@@ -8,42 +13,69 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use robot_simulation::{RobotSummary, Simulation, Transport, draw_drive};
+use robot_simulation::{Fault, RobotSummary, Simulation, Transport, draw_drive};
 
 use crate::component::Environment;
 use crate::event_log::Event;
 
-/// A simulated world. The lock is held for one step of the world or for opening a device, never
-/// while a component runs.
+pub use process::{STANDS, serve};
+pub use remote::RemoteWorld;
+
+/// A simulated world.
 pub struct World {
-    simulation: Mutex<Simulation>,
-    transport: Transport,
+    place: Place,
     reached: AtomicBool,
+}
+
+enum Place {
+    /// The lock is held for one step of the world or for opening a device, never while a component
+    /// runs.
+    Here {
+        simulation: Box<Mutex<Simulation>>,
+        transport: Transport,
+    },
+    Elsewhere(RemoteWorld),
 }
 
 impl World {
     /// Hosts a world whose serial lines are pseudo-terminals (`real_time`) or pipes in the process:
     /// bytes pass a pseudo-terminal through a queue of the kernel, at no time one could rely on.
     pub fn new(simulation: Simulation, real_time: bool) -> Self {
+        let transport = if real_time {
+            Transport::PseudoTerminal
+        } else {
+            Transport::InProcess
+        };
+        Self::at(Place::Here {
+            simulation: Box::new(Mutex::new(simulation)),
+            transport,
+        })
+    }
+
+    /// A world in another process, which moves by itself.
+    pub fn remote(world: RemoteWorld) -> Self {
+        Self::at(Place::Elsewhere(world))
+    }
+
+    fn at(place: Place) -> Self {
         Self {
-            simulation: Mutex::new(simulation),
-            transport: if real_time {
-                Transport::PseudoTerminal
-            } else {
-                Transport::InProcess
-            },
+            place,
             reached: AtomicBool::new(false),
         }
     }
 
-    /// Moves the world to `now`; true once the robot has reached its target.
+    /// Moves the world to `now`, if it is not elsewhere; true once the robot has reached its target.
     pub fn advance_to(&self, now: Duration, environment: &Environment) -> bool {
-        let mut simulation = self.lock();
-        simulation.advance_to(now);
-        let summary = simulation.summary();
-        let time_ns = u64::try_from(simulation.time().as_nanos()).unwrap_or(u64::MAX);
-        drop(simulation);
+        let (summary, time) = match &self.place {
+            Place::Here { simulation, .. } => {
+                let mut simulation = lock(simulation);
+                simulation.advance_to(now);
+                (simulation.summary(), simulation.time())
+            }
+            Place::Elsewhere(world) => (world.summary(), now),
+        };
         if summary.reached && !self.reached.swap(true, Ordering::AcqRel) {
+            let time_ns = u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
             environment.clock.advance_to(time_ns);
             environment.events.record(
                 time_ns,
@@ -60,19 +92,31 @@ impl World {
         self.reached.load(Ordering::Acquire)
     }
 
-    /// Time between two steps of the world.
+    /// Time between two steps of the world, or two looks at it.
     pub fn step_period(&self) -> Duration {
-        self.lock().step_period()
+        match &self.place {
+            Place::Here { simulation, .. } => lock(simulation).step_period(),
+            Place::Elsewhere(_) => remote::LOOK_PERIOD,
+        }
     }
 
     /// How the drive went so far.
     pub fn summary(&self) -> RobotSummary {
-        self.lock().summary()
+        match &self.place {
+            Place::Here { simulation, .. } => lock(simulation).summary(),
+            Place::Elsewhere(world) => world.summary(),
+        }
     }
 
     /// A picture of the drive so far, as SVG.
-    pub fn picture(&self) -> String {
-        draw_drive(&self.lock())
+    ///
+    /// # Errors
+    /// If the world is in another process and does not answer.
+    pub fn picture(&self) -> io::Result<String> {
+        match &self.place {
+            Place::Here { simulation, .. } => Ok(draw_drive(&lock(simulation))),
+            Place::Elsewhere(world) => world.picture(),
+        }
     }
 
     /// Opens a device of the world; with its file, if it has one that a person can look at.
@@ -80,17 +124,31 @@ impl World {
     /// # Errors
     /// If there is no such device, or it is unplugged.
     pub fn open(&self, device: &str) -> io::Result<(OwnedFd, Option<PathBuf>)> {
-        let mut simulation = self.lock();
-        let line = simulation.open(device, self.transport)?;
-        Ok((line, simulation.slave_path(device).map(PathBuf::from)))
+        match &self.place {
+            Place::Here {
+                simulation,
+                transport,
+            } => {
+                let mut simulation = lock(simulation);
+                let line = simulation.open(device, *transport)?;
+                Ok((line, simulation.slave_path(device).map(PathBuf::from)))
+            }
+            Place::Elsewhere(world) => world.open(device),
+        }
     }
 
-    /// The simulation itself, for tests and fault injection.
-    pub fn lock(&self) -> MutexGuard<'_, Simulation> {
-        self.simulation
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
+    /// Makes a fault of the robot's hardware appear, or repairs it.
+    pub fn set_fault(&self, fault: Fault, present: bool) {
+        match &self.place {
+            Place::Here { simulation, .. } if present => lock(simulation).set_fault(fault),
+            Place::Here { simulation, .. } => lock(simulation).clear_fault(fault),
+            Place::Elsewhere(world) => world.set_fault(fault, present),
+        }
     }
+}
+
+fn lock(simulation: &Mutex<Simulation>) -> MutexGuard<'_, Simulation> {
+    simulation.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl fmt::Debug for World {

@@ -131,7 +131,8 @@ impl FaultManager {
     /// not over before one that is, and the oldest.
     fn explain(&self, id: FaultId) -> Option<FaultId> {
         let fault = self.history.get(id)?;
-        let suspects = self.suspects(fault.runs);
+        let mut suspects = self.suspects(fault.runs);
+        suspects.retain(|(_, root)| *root != id);
         if suspects.is_empty() {
             return None;
         }
@@ -145,7 +146,7 @@ impl FaultManager {
             let near = |component: usize| steps.iter().any(|(_, step)| *step == component);
             let roots = suspects
                 .iter()
-                .filter(|(component, root)| near(*component) && *root != id)
+                .filter(|(component, _)| near(*component))
                 .map(|(_, root)| *root);
             if let Some(root) = roots.min_by_key(|root| (is_over(*root), *root)) {
                 return Some(root);
@@ -165,12 +166,15 @@ impl FaultManager {
                     && (fault.is_being_handled() || fault.handled_at.is_some_and(recent))
             })
         };
-        let faulty = self.history.all().map(|fault| {
+        let suspect = |fault: &Fault| {
             let root = self.root_of(fault.verdict.id);
-            (fault.component, root)
-        });
-        let mut suspects: Vec<(usize, FaultId)> =
-            faulty.filter(|(_, root)| explains(*root)).collect();
+            explains(root).then_some((fault.component, root))
+        };
+        let mut suspects: Vec<(usize, FaultId)> = if runs {
+            self.history.all().filter_map(suspect).collect()
+        } else {
+            self.history.open().filter_map(suspect).collect()
+        };
         if runs {
             let states = self.components.iter().enumerate();
             let down = states.filter_map(|(component, state)| Some((component, state.down?.by)));

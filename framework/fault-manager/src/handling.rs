@@ -119,7 +119,7 @@ impl FaultManager {
             let same = |work: &Work| work.id == id;
             let under_way = self.components[component].work.as_ref().is_some_and(same);
             if under_way && symptom.incarnation < incarnation {
-                self.judge(&symptom);
+                self.judge(symptom);
             } else {
                 self.symptom(symptom);
             }
@@ -143,7 +143,7 @@ impl FaultManager {
         };
         self.note_outcome(work.fault, work.id, outcome, reason);
         for symptom in std::mem::take(&mut self.components[component].queue) {
-            self.judge(&symptom);
+            self.judge(symptom);
         }
         let same = self.components[component].recovery();
         if same.is_none_or(|same| same.id != work.id) {

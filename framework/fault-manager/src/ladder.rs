@@ -17,6 +17,9 @@ pub(crate) struct Ladder {
     in_vain: usize,
     /// Index of the secondary that is next.
     next_secondary: usize,
+    /// A secondary was chosen and has not worked yet: there is nothing that a reset could bring
+    /// back.
+    replacing: bool,
 }
 
 /// What is to be tried next.
@@ -44,7 +47,7 @@ impl Ladder {
             .as_ref()
             .is_none_or(|rule| rule.value.reset);
         let used = self.within_window(rule, now);
-        if may_reset && used < rule.retry_max.min(MAX_RETRY_MAX) {
+        if may_reset && !self.replacing && used < rule.retry_max.min(MAX_RETRY_MAX) {
             let last = self.resets.back().filter(|_| used > 0);
             let not_before = last.map_or(now, |last| last.saturating_add(rule.backoff).max(now));
             self.resets.push_back(not_before);
@@ -57,7 +60,7 @@ impl Ladder {
         if self.next_secondary < component.rules.secondaries.len() {
             let secondary = self.next_secondary;
             self.next_secondary += 1;
-            self.renew();
+            self.replacing = true;
             return Rung::Replace(secondary);
         }
         Rung::Exhausted
@@ -68,11 +71,16 @@ impl Ladder {
     pub fn renew(&mut self) {
         self.resets.clear();
         self.in_vain = 0;
+        self.replacing = false;
     }
 
-    /// The component works again: the window is about how often that is.
+    /// The component works again: the window is about how often that is. Those of a secondary that
+    /// works are counted from nothing.
     pub fn worked(&mut self) {
         self.in_vain = 0;
+        if self.replacing {
+            self.renew();
+        }
     }
 
     /// Forgets the resets that have left the window and counts the others. Those that were in vain
@@ -89,9 +97,15 @@ impl Ladder {
 
 #[cfg(test)]
 mod tests {
+    use std::path::PathBuf;
+
     use system_model::profile::Located;
-    use system_model::rules::{ApplicationSeverity, ComponentRules, ResurrectRule};
-    use system_model::specification::Place;
+    use system_model::rules::{
+        ApplicationSeverity, ComponentRules, Preload, ResurrectRule, Secondary,
+    };
+    use system_model::specification::{
+        ComponentSpecification, ExecutionKind, ExecutionSemantics, Place, SchedulingPolicy,
+    };
 
     use super::*;
 
@@ -183,6 +197,49 @@ mod tests {
                 });
                 assert_eq!(rung, reset.unwrap_or(Rung::Exhausted), "{case}, at {at}");
             }
+        }
+    }
+
+    #[test]
+    fn a_replacement_that_never_worked_is_followed_by_the_next_secondary() {
+        let mut component = component(None, 1, 1000, 0);
+        component.rules.secondaries = vec![secondary(), secondary()];
+        let mut ladder = Ladder::default();
+        let mut climb = |worked: bool| {
+            if worked {
+                ladder.worked();
+            }
+            match ladder.climb(&component, Duration::ZERO) {
+                Rung::Reset { .. } => "reset".to_owned(),
+                Rung::Replace(secondary) => format!("secondary {secondary}"),
+                Rung::Exhausted => "exhausted".to_owned(),
+            }
+        };
+        let rungs = [false, false, false, true, false].map(&mut climb);
+        let expected = ["reset", "secondary 0", "secondary 1", "reset", "exhausted"];
+        assert_eq!(rungs, expected);
+    }
+
+    fn secondary() -> Secondary {
+        let specification = ComponentSpecification {
+            name: String::new(),
+            type_name: String::new(),
+            profile: PathBuf::new(),
+            place: Place::default(),
+            library: String::new(),
+            execution: ExecutionSemantics {
+                kind: ExecutionKind::Periodic,
+                period: Duration::from_millis(10),
+                priority: 0,
+                policy: SchedulingPolicy::Other,
+            },
+            properties: Vec::new(),
+            ports: Vec::new(),
+            node: String::new(),
+        };
+        Secondary {
+            specification,
+            preload: Preload::Cold,
         }
     }
 

@@ -64,7 +64,7 @@ impl Fault {
         component: &Component,
         index: usize,
         terms: Terms,
-        of: &Symptom,
+        of: Symptom,
     ) -> Self {
         Self {
             verdict: Verdict {
@@ -75,7 +75,7 @@ impl Fault {
                 incarnation: of.incarnation,
                 node: component.node.clone(),
                 rule: terms.place.as_ref().map(ToString::to_string),
-                evidence: of.evidence.clone(),
+                evidence: of.evidence,
                 symptoms: 0,
                 first_symptom_ns: nanoseconds(of.at),
                 confirmed_ns: 0,
@@ -130,14 +130,14 @@ impl Fault {
         fault
     }
 
-    /// Takes a symptom in; says whether the debounce is satisfied. A component that does not run any
+    /// Takes a symptom in that was seen at this time, of a component that runs or does not; says
+    /// whether the debounce is satisfied. A component that does not run any
     /// more cannot show a second symptom: the first one is enough.
-    pub fn take(&mut self, symptom: &Symptom, now: Duration) -> bool {
-        let at = symptom.at.min(now);
+    pub fn take(&mut self, at: Duration, runs: bool, now: Duration) -> bool {
+        let at = at.min(now);
         self.last_heard = now;
-        self.runs &= symptom.runs;
+        self.runs &= runs;
         self.verdict.symptoms = self.verdict.symptoms.saturating_add(1);
-        self.verdict.evidence = symptom.evidence.clone();
         let enough = match self.terms.confirmation.within {
             None => {
                 self.in_a_row = self.in_a_row.saturating_add(1);
@@ -148,7 +148,7 @@ impl Fault {
             }
             Some(within) => self.take_within(at, within),
         };
-        enough || !symptom.runs
+        enough || !runs
     }
 
     fn take_within(&mut self, at: Duration, within: Duration) -> bool {

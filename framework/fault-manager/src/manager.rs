@@ -82,10 +82,19 @@ impl FaultManager {
     /// Actions come before the records that tell of them, so that nothing waits for a record; a
     /// verdict that changes several times by one observation is recorded once.
     pub fn observe(&mut self, now: Duration, observation: Observation) -> Vec<Effect> {
+        let mut effects = self.react(now, observation);
+        effects.extend(self.records().map(Effect::Record));
+        effects
+    }
+
+    /// As [`Self::observe`], for who is in a hurry: the verdicts that have changed are to be asked
+    /// for afterwards ([`Self::records`]); one that changes again before that is recorded once.
+    pub fn react(&mut self, now: Duration, observation: Observation) -> Vec<Effect> {
         let before = self.now.max(now);
         self.now = before;
         // What was due earlier comes first; what is due just now leaves the observation the lead.
         self.elapse(|due| due < before);
+        let hurried = matches!(observation, Observation::Symptom(_));
         match observation {
             Observation::Running => self.run(),
             Observation::Symptom(symptom) => self.symptom(*symptom),
@@ -100,7 +109,7 @@ impl FaultManager {
             Observation::Tick => {}
         }
         self.elapse(|due| due <= before);
-        self.record();
+        self.history.tidy(hurried);
         std::mem::take(&mut self.effects)
     }
 
@@ -120,6 +129,11 @@ impl FaultManager {
         self.history.all().map(|fault| &fault.verdict)
     }
 
+    /// The verdict on a fault, unless it has been forgotten.
+    pub fn verdict(&self, id: FaultId) -> Option<&Verdict> {
+        self.history.get(id).map(|fault| &fault.verdict)
+    }
+
     /// Whether an emergency stop is latched.
     pub fn is_emergency(&self) -> bool {
         self.emergency.is_some()
@@ -130,7 +144,7 @@ impl FaultManager {
         let state = self.components.get(component)?;
         let waits = || {
             self.history
-                .all()
+                .open()
                 .any(|fault| fault.component == component && fault.waits.is_some() && !fault.runs)
         };
         Some(match &state.down {
@@ -147,14 +161,12 @@ impl FaultManager {
         self.components.iter().map(level).collect()
     }
 
-    /// Puts the verdicts on record that have changed.
-    fn record(&mut self) {
-        for id in std::mem::take(&mut self.changed) {
-            if let Some(fault) = self.history.get(id) {
-                let verdict = Box::new(fault.verdict.clone());
-                self.effects.push(Effect::Record(verdict));
-            }
-        }
-        self.history.trim();
+    /// The verdicts that have changed since they were asked for last, for the record.
+    pub fn records(&mut self) -> impl Iterator<Item = Box<Verdict>> {
+        let changed = std::mem::take(&mut self.changed).into_iter();
+        changed.filter_map(|id| {
+            let fault = self.history.get(id)?;
+            Some(Box::new(fault.verdict.clone()))
+        })
     }
 }

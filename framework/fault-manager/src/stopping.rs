@@ -119,7 +119,7 @@ impl FaultManager {
             self.give_up_waiting(other);
         }
         for symptom in std::mem::take(&mut self.components[component].queue) {
-            self.judge(&symptom);
+            self.judge(symptom);
         }
     }
 

@@ -53,7 +53,7 @@ impl FaultManager {
             Some((owner, ended)) if terms.severity != ComponentSeverity::Emergency => {
                 self.symptom_in_recovery(component, owner, ended, symptom);
             }
-            _ => self.judge(&symptom),
+            _ => self.judge(symptom),
         }
     }
 
@@ -68,8 +68,9 @@ impl FaultManager {
     ) {
         let of_new_instance = ended.is_some_and(|new| symptom.incarnation >= new);
         if of_new_instance && !symptom.runs {
-            self.judge(&symptom);
-            let reason = format!("{} before its first cycle was completed", symptom.kind);
+            let kind = symptom.kind;
+            self.judge(symptom);
+            let reason = format!("{kind} before its first cycle was completed");
             self.recovery_failed(component, "failed", reason);
         } else if self.components[component].enqueue(symptom)
             && let Some(fault) = self.history.get_mut(owner)
@@ -79,23 +80,28 @@ impl FaultManager {
     }
 
     /// Passes a symptom through the debounce.
-    pub(crate) fn judge(&mut self, symptom: &Symptom) {
-        let terms = self.detectors.terms(&self.system, symptom);
+    pub(crate) fn judge(&mut self, symptom: Symptom) {
+        let terms = self.detectors.terms(&self.system, &symptom);
         let component = self.detectors.all[symptom.detector.0].component;
-        let open = self.history.open(symptom.detector, symptom.kind, &terms);
-        let id = open.unwrap_or_else(|| {
-            let id = self.history.number();
-            let named = &self.system.components[component];
-            let fault = Fault::new(id, named, component, terms, symptom);
-            self.history.insert(fault);
-            id
-        });
+        let (at, runs) = (symptom.at, symptom.runs);
+        let open = self
+            .history
+            .fault_of(symptom.detector, symptom.kind, &terms);
+        let id = open.unwrap_or_else(|| self.history.number());
+        match self.history.get_mut(id) {
+            Some(fault) => fault.verdict.evidence = symptom.evidence,
+            None => {
+                let named = &self.system.components[component];
+                let fault = Fault::new(id, named, component, terms, symptom);
+                self.history.insert(fault);
+            }
+        }
         let now = self.now;
         let Some(fault) = self.history.get_mut(id) else {
             return;
         };
         let ran = fault.runs;
-        let enough = fault.take(symptom, now);
+        let enough = fault.take(at, runs, now);
         match fault.verdict.state {
             FaultState::Prefailed if enough => self.confirm(id),
             FaultState::Prefailed => {}
@@ -156,7 +162,7 @@ impl FaultManager {
         let passes = |symptom: &Symptom| symptom.runs && symptom.detector == detector;
         let (over, left): (VecDeque<_>, VecDeque<_>) = queue.into_iter().partition(passes);
         self.components[component].queue = left;
-        for symptom in &over {
+        for symptom in over {
             self.judge(symptom);
         }
         for id in self.history.which(|fault| fault.detector == detector) {

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use system_model::world::{Pose, Position};
 
 use crate::arena::{Arena, SolidKind};
@@ -18,7 +18,7 @@ const PATH_CAPACITY: usize = 18_000;
 const SENSED_CAPACITY: usize = 20_000;
 
 /// How a drive went.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RobotSummary {
     /// The robot came within reach of the target.
     pub reached: bool,

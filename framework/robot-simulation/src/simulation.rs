@@ -141,6 +141,11 @@ impl Simulation {
         self.faults.clear(fault);
     }
 
+    /// Repairs all faults.
+    pub fn clear_faults(&mut self) {
+        self.faults = Faults::default();
+    }
+
     /// Opens the line to [`MOTION_BOARD`] or [`CAMERA`] and returns the component's end, which
     /// never blocks. A device can be opened again; an older in-process end then ends. The camera
     /// has no serial line: it always answers in the process.

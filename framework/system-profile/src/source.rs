@@ -61,7 +61,12 @@ impl Source {
         let offset = offset.min(self.text.len());
         let line = self.line_starts.partition_point(|start| *start <= offset);
         let start = self.line_starts[line - 1];
-        let column = self.characters_up_to(offset) - self.characters_up_to(start) + 1;
+        // Of a line of usual length it is cheaper to count the characters themselves.
+        let before = match offset - start < CHARACTER_INDEX_STEP {
+            true => characters(&self.text.as_bytes()[start..offset]),
+            false => self.characters_up_to(offset) - self.characters_up_to(start),
+        };
+        let column = before + 1;
         Place {
             file: self.path.clone(),
             line: u32::try_from(line).unwrap_or(u32::MAX),
@@ -106,12 +111,7 @@ impl Source {
         let Some(before) = self.characters_before.get(step) else {
             return self.text.chars().count();
         };
-        let rest = &self.text.as_bytes()[step * CHARACTER_INDEX_STEP..offset];
-        before
-            + rest
-                .iter()
-                .filter(|byte| starts_a_character(**byte))
-                .count()
+        before + characters(&self.text.as_bytes()[step * CHARACTER_INDEX_STEP..offset])
     }
 }
 
@@ -120,6 +120,12 @@ impl fmt::Debug for Source {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.debug_tuple("Source").field(&self.path).finish()
     }
+}
+
+fn characters(text: &[u8]) -> usize {
+    text.iter()
+        .filter(|byte| starts_a_character(**byte))
+        .count()
 }
 
 fn starts_a_character(byte: u8) -> bool {

@@ -1,16 +1,18 @@
 //! The libraries of an application, each found, probed once, and loaded for every instance.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use system_model::specification::ComponentSpecification;
 
 use super::{AssemblyProblem, LibraryOptions};
-use crate::library::{LoadedLibrary, probe};
+use crate::library::{LibraryError, LoadedLibrary, probe};
 
 /// Loads libraries; every instance gets a copy of its own: see `LoadedLibrary`.
 pub(super) struct Libraries<'options> {
     options: &'options LibraryOptions,
     probed: Vec<PathBuf>,
+    /// The first copy of each file.
+    first: Vec<LoadedLibrary>,
     pub(super) problems: Vec<AssemblyProblem>,
 }
 
@@ -19,6 +21,7 @@ impl<'options> Libraries<'options> {
         Self {
             options,
             probed: Vec::new(),
+            first: Vec::new(),
             problems: Vec::new(),
         }
     }
@@ -33,19 +36,48 @@ impl<'options> Libraries<'options> {
             .collect()
     }
 
-    pub(super) fn load(&mut self, component: &ComponentSpecification) -> Option<LoadedLibrary> {
-        let beside_profile = component.profile.parent().map(PathBuf::from);
-        let search = self.options.search.preceded_by(beside_profile);
-        let result = search.find(&component.library).and_then(|path| {
+    /// A copy of a component's library.
+    fn load(&mut self, component: &ComponentSpecification) -> Option<LoadedLibrary> {
+        let loaded = self.find(component).and_then(|path| {
             if let Some(executable) = &self.options.executable
                 && !self.probed.contains(&path)
             {
                 probe(executable, &path)?;
                 self.probed.push(path.clone());
             }
-            LoadedLibrary::load(&path)
+            let library = LoadedLibrary::load(&path)?;
+            if self.first_of(&path).is_none() {
+                self.first.push(library.clone());
+            }
+            Ok(library)
         });
-        match result {
+        self.noted(component, loaded)
+    }
+
+    /// What a component's library says of itself: no instance is made of it, so a file that was
+    /// loaded before is not loaded again.
+    pub(super) fn look_at(&mut self, component: &ComponentSpecification) -> Option<LoadedLibrary> {
+        let known = self.find(component).ok();
+        let known = known.and_then(|path| self.first_of(&path).cloned());
+        known.or_else(|| self.load(component))
+    }
+
+    fn find(&self, component: &ComponentSpecification) -> Result<PathBuf, LibraryError> {
+        let beside_profile = component.profile.parent().map(PathBuf::from);
+        let search = self.options.search.preceded_by(beside_profile);
+        search.find(&component.library)
+    }
+
+    fn first_of(&self, path: &Path) -> Option<&LoadedLibrary> {
+        self.first.iter().find(|library| library.path == path)
+    }
+
+    fn noted(
+        &mut self,
+        component: &ComponentSpecification,
+        loaded: Result<LoadedLibrary, LibraryError>,
+    ) -> Option<LoadedLibrary> {
+        match loaded {
             Ok(library) => Some(library),
             Err(error) => {
                 self.problems.push(AssemblyProblem::Library {

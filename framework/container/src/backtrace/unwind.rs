@@ -7,6 +7,7 @@ use framehop::{
 use object::{Object as _, ObjectSection as _};
 
 use crate::guard::{LoadedObject, Registers};
+use crate::library::whole;
 
 /// Calls that are followed, the component's and those of libraries that it called: more than any
 /// sane depth of the C library below a component's 32.
@@ -90,7 +91,7 @@ impl Known {
         let Some(object) = object else {
             return false;
         };
-        if let Ok(content) = std::fs::read(&object.file)
+        if let Ok(content) = std::fs::read(whole(&object.file))
             && let Ok(file) = object::File::parse(content.as_slice())
         {
             self.unwinder.add_module(module(&object, &file));

@@ -6,6 +6,7 @@ mod failure;
 mod live;
 mod models;
 mod report;
+mod supervised;
 mod words;
 
 use std::io::{self, IsTerminal as _, Write as _};
@@ -26,8 +27,10 @@ use robot_simulation::Simulation;
 use system_profile::{Problem, load_world};
 
 use super::problems;
-use failure::{Failed, exit_code, refused, unwritable};
+pub(super) use failure::{Failed, exit_code};
+use failure::{refused, unwritable};
 use live::Watcher;
+use supervised::SupervisionArguments;
 
 /// How often a person's view is refreshed: fast enough to look alive, slow enough to be read.
 const REFRESH_PERIOD: Duration = Duration::from_millis(100);
@@ -47,7 +50,8 @@ const LIBRARY_PATH_VARIABLE: &str = "STEADFAST_LIBRARY_PATH";
   3  a library is missing, no component, or for another container
   4  ports or connections do not fit the libraries
   5  a component refused to be initialised or started, or hung in it
-  6  the system refused threads or memory")]
+  6  the system refused threads or memory
+  7  --supervised: the container failed more often than --restarts allows")]
 pub struct RunArguments {
     /// Application profiles (`package_profile` or `application_profile`), run in one container
     #[arg(required = true, value_name = "APPLICATION.xml")]
@@ -91,6 +95,8 @@ pub struct RunArguments {
     /// Remove the checkpoints of a run that died, instead of going on from them
     #[arg(long)]
     fresh: bool,
+    #[command(flatten)]
+    supervision: SupervisionArguments,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -103,8 +109,12 @@ enum ClockArgument {
 
 /// Runs applications to their end.
 pub fn run(arguments: &RunArguments) -> ExitCode {
-    match run_to_end(arguments) {
-        Ok(()) => ExitCode::from(exit_code::ENDED),
+    let ended = match arguments.supervision.supervised {
+        true => supervised::run(arguments),
+        false => run_to_end(arguments).map(|()| exit_code::ENDED),
+    };
+    match ended {
+        Ok(code) => ExitCode::from(code),
         Err(failed) => {
             // If nobody reads the text the exit code still tells.
             let _unread = writeln!(io::stderr(), "{}", failed.text.trim_end());
@@ -114,8 +124,12 @@ pub fn run(arguments: &RunArguments) -> ExitCode {
 }
 
 fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
+    let supervised = supervised::join(arguments)?;
     let applications = applications::load(arguments)?;
-    let simulation = simulate(&applications, arguments.seed)?;
+    let simulation = match supervised.as_ref().and_then(|it| it.world()) {
+        Some(_elsewhere) => None,
+        None => simulate(&applications, arguments.seed)?,
+    };
     let stop_asked = watch_signals()?;
     let (echo, lines) = bounded(ECHO_QUEUE);
     let options = RunOptions {
@@ -132,6 +146,7 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
             folder: arguments.state_path.clone(),
             fresh: arguments.fresh,
         },
+        supervised: supervised.clone(),
     };
     let started = System::start(applications, simulation, options);
     let system = started.map_err(|error| refused(&error))?;
@@ -146,6 +161,9 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         }
         watcher.refresh(&system);
     };
+    if let Some(supervised) = supervised {
+        supervised.stops();
+    }
     drop(server);
     let world = system.world().cloned();
     let (summary, log_error) = system.stop(reason);
@@ -154,7 +172,9 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         return Err(unwritable(arguments.events.as_deref(), &error));
     }
     if let (Some(path), Some(world)) = (&arguments.picture, world) {
-        write(path, world.picture().as_bytes())?;
+        let picture = world.picture();
+        let picture = picture.map_err(|error| unwritable(Some(path), &error))?;
+        write(path, picture.as_bytes())?;
     }
     conclude(arguments, &summary)
 }
@@ -203,9 +223,12 @@ fn show(found: &[Problem]) {
 }
 
 fn simulate(applications: &[Application], seed: u64) -> Result<Option<Simulation>, Failed> {
-    let Some(path) = applications::world(applications)? else {
-        return Ok(None);
-    };
+    let world = applications::world(applications)?;
+    world.map(|path| simulation(path, seed)).transpose()
+}
+
+/// The run of a world.
+pub(super) fn simulation(path: &Path, seed: u64) -> Result<Simulation, Failed> {
     let outcome = load_world(path);
     let Some(world) = outcome.world else {
         return Err(Failed {
@@ -214,11 +237,10 @@ fn simulate(applications: &[Application], seed: u64) -> Result<Option<Simulation
         });
     };
     show(&outcome.problems);
-    let simulation = Simulation::new(&world, seed).map_err(|error| Failed {
+    Simulation::new(&world, seed).map_err(|error| Failed {
         code: exit_code::PROFILE,
         text: format!("{}: {error}", path.display()),
-    })?;
-    Ok(Some(simulation))
+    })
 }
 
 /// The first signal asks for a stop in order, the second ends the process at once.
@@ -235,23 +257,28 @@ fn watch_signals() -> Result<Arc<AtomicBool>, Failed> {
     Ok(asked)
 }
 
-/// Libraries: the folders given, those of the environment, then the folder of this executable.
+/// Where libraries are found and how they are probed.
 fn libraries(arguments: &RunArguments) -> LibraryOptions {
-    let executable = std::env::current_exe().ok();
-    let mut folders = arguments.library_path.clone();
+    LibraryOptions {
+        search: LibrarySearch::new(library_folders(&arguments.library_path)),
+        executable: std::env::current_exe().ok(),
+    }
+}
+
+/// Folders of libraries: those given, those of the environment, then that of this executable.
+pub fn library_folders(given: &[PathBuf]) -> Vec<PathBuf> {
+    let mut folders = given.to_vec();
     if let Some(variable) = std::env::var_os(LIBRARY_PATH_VARIABLE) {
         folders.extend(std::env::split_paths(&variable));
     }
+    let executable = std::env::current_exe().ok();
     folders.extend(
         executable
             .as_deref()
             .and_then(Path::parent)
             .map(PathBuf::from),
     );
-    LibraryOptions {
-        search: LibrarySearch::new(folders),
-        executable,
-    }
+    folders
 }
 
 fn write(path: &Path, content: &[u8]) -> Result<(), Failed> {

@@ -7,6 +7,8 @@
 
 use std::time::Duration;
 
+use crc32c::crc32c;
+
 use super::inheritance::Inheritance;
 use super::services::Services;
 use crate::persistence::CopySender;
@@ -15,8 +17,9 @@ use crate::persistence::CopySender;
 /// is found some cycles after it began.
 const KEPT: usize = 3;
 
-/// The polynomial of iSCSI, for which processors have an instruction.
-const CHECKSUM: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISCSI);
+/// Cycles of the machine's clock, and those that a successor does again, come as unevenly as this
+/// part of a period: a component with a backup in every cycle shall have it in every cycle.
+const UNEVENNESS: u64 = 8;
 
 /// The copies of one component.
 #[derive(Debug)]
@@ -37,6 +40,8 @@ struct Copy {
     /// 0 while it is being written, or before the first time.
     sequence: u64,
     taken_ns: u64,
+    /// By the polynomial of iSCSI, for which processors have an instruction: a table would take
+    /// longer than all the rest of a takeover.
     checksum: u32,
     bytes: Vec<u8>,
 }
@@ -79,7 +84,7 @@ impl Checkpoints {
         let Some(memory) = services.critical_memory() else {
             return;
         };
-        self.due_ns = now_ns + self.period_ns;
+        self.due_ns = now_ns + self.period_ns - self.period_ns / UNEVENNESS;
         let next = self.sequence + 1;
         let copy = &mut self.copies[(next % KEPT as u64) as usize];
         copy.sequence = 0;
@@ -88,7 +93,7 @@ impl Checkpoints {
         if !memory.copy_to(&mut copy.bytes) {
             return;
         }
-        copy.checksum = CHECKSUM.checksum(&copy.bytes);
+        copy.checksum = crc32c(&copy.bytes);
         copy.taken_ns = now_ns;
         copy.sequence = next;
         self.sequence = next;
@@ -103,7 +108,7 @@ impl Checkpoints {
         self.copies[(sequence % KEPT as u64) as usize] = Copy {
             sequence,
             taken_ns: 0,
-            checksum: CHECKSUM.checksum(&bytes),
+            checksum: crc32c(&bytes),
             bytes,
         };
     }
@@ -119,15 +124,16 @@ impl Checkpoints {
 
     /// The newest whole copy that was taken before `before_ns`; how many were found broken.
     pub fn newest_before(&self, before_ns: u64) -> (Option<Certified<'_>>, usize) {
-        let mut whole: Vec<&Copy> = self
-            .copies
-            .iter()
-            .filter(|copy| copy.sequence > 0 && copy.taken_ns < before_ns)
-            .collect();
-        whole.sort_by_key(|copy| copy.sequence);
         let mut broken = 0;
-        while let Some(copy) = whole.pop() {
-            if CHECKSUM.checksum(&copy.bytes) == copy.checksum {
+        let mut below = u64::MAX;
+        loop {
+            let whole = self.copies.iter().filter(|copy| {
+                copy.sequence > 0 && copy.sequence < below && copy.taken_ns < before_ns
+            });
+            let Some(copy) = whole.max_by_key(|copy| copy.sequence) else {
+                return (None, broken);
+            };
+            if crc32c(&copy.bytes) == copy.checksum {
                 let certified = Certified {
                     sequence: copy.sequence,
                     taken_ns: copy.taken_ns,
@@ -136,8 +142,8 @@ impl Checkpoints {
                 return (Some(certified), broken);
             }
             broken += 1;
+            below = copy.sequence;
         }
-        (None, broken)
     }
 
     /// Turns a bit of the newest copy round (fault injection).
@@ -154,7 +160,7 @@ impl Checkpoints {
         self.copies[(self.sequence % KEPT as u64) as usize] = Copy {
             sequence: self.sequence,
             taken_ns,
-            checksum: CHECKSUM.checksum(content),
+            checksum: crc32c(content),
             bytes: content.to_vec(),
         };
     }
@@ -212,7 +218,7 @@ mod tests {
         checkpoints.corrupt();
         assert_eq!(taken(&checkpoints, u64::MAX), (Some(30), 1));
         for copy in &mut checkpoints.copies {
-            copy.checksum = !CHECKSUM.checksum(&copy.bytes);
+            copy.checksum = !crc32c(&copy.bytes);
         }
         assert_eq!(taken(&checkpoints, u64::MAX), (None, 3));
     }

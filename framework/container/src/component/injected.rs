@@ -14,6 +14,11 @@ use crate::guard::{CallLimit, Callback, Misbehaviour};
 const INJECTED_HANG: Duration = Duration::from_millis(1);
 
 impl Component {
+    /// Lets it misbehave in its next callback, whoever else wants what of it.
+    pub(crate) fn misbehave(&mut self, misbehaviour: Misbehaviour) {
+        self.instance.inject(Some(misbehaviour));
+    }
+
     /// Lets the component misbehave in the callback that is about to begin, if it is to; the limit
     /// of that, where it is another one.
     #[cold]

@@ -1,7 +1,7 @@
 //! An instance of a component, wherever it runs: behind the guard in this process, or in a host.
 
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crate::guard::loss::Loss;
 use crate::guard::{self, CallLimit, Callback, Ending, Guarded, HostServices, Misbehaviour, Trap};
@@ -115,6 +115,13 @@ impl Instance {
         }
     }
 
+    /// Sees to it that its first callbacks need not wait for memory. (A host has its own.)
+    pub fn touch_memory(&self) {
+        if let Self::Guarded(guarded) = self {
+            guarded.touch_memory();
+        }
+    }
+
     /// Never call it again.
     pub fn quarantine(&mut self) {
         match self {
@@ -128,6 +135,14 @@ impl Instance {
         match self {
             Self::Guarded(guarded) => guarded.inject(misbehaviour),
             Self::Hosted(hosted) => hosted.inject(misbehaviour),
+        }
+    }
+
+    /// When it misbehaved last as it was made to, just before that.
+    pub fn misbehaved(&self) -> Option<Instant> {
+        match self {
+            Self::Guarded(guarded) => guarded.misbehaved(),
+            Self::Hosted(hosted) => hosted.misbehaved(),
         }
     }
 

@@ -25,6 +25,7 @@ impl Component {
         called: Callback,
         callback: &'static str,
     ) -> Box<Fault> {
+        self.time_misbehaviour();
         let mut fault = match ending {
             Ending::Returned(status) => self.services.returned_fault(status, callback),
             Ending::Trapped(trap) => {
@@ -71,6 +72,15 @@ impl Component {
         }
         self.scene = self.instance.scene(None);
         Fault::new(FaultKind::HostEnded, callback, message)
+    }
+
+    /// Notes when an injected misbehaviour acted, for whoever measures a recovery.
+    fn time_misbehaviour(&self) {
+        let clock = &self.services.environment().clock;
+        let acted = self.instance.misbehaved();
+        if let Some(time_ns) = acted.and_then(|acted| clock.at_ns(acted)) {
+            self.status.set_misbehaved_ns(time_ns);
+        }
     }
 
     /// In simulated time a hang has lasted for as long as the rules say.

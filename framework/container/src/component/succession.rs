@@ -7,8 +7,8 @@ use std::time::Duration;
 use system_model::specification::{PortDirection, PortKind};
 
 use super::port_end::{Calls, PortEnd};
-use super::{Checkpoints, Component, Inbox};
-use crate::library::PortDescription;
+use super::{Checkpoints, Component, Restored, Services};
+use crate::library::{MethodDescription, PortDescription};
 use system_model::injection::ContainerFailure;
 use system_model::life_cycle::LifeCycleState;
 
@@ -42,11 +42,7 @@ impl Numbering {
     }
 
     fn between(first: &Arc<[PortDescription]>, own: &Arc<[PortDescription]>) -> Self {
-        let names = |ports: &[PortDescription]| {
-            let name = |port: &PortDescription| (port.name.clone(), method_names(port));
-            ports.iter().map(name).collect::<Vec<_>>()
-        };
-        if names(first) == names(own) {
+        if are_numbered_alike(first, own) {
             return Self {
                 first: Some(Arc::clone(first)),
                 ..Self::default()
@@ -82,29 +78,7 @@ impl Component {
         let first = Arc::clone(first.unwrap_or(predecessor.services.interface()));
         self.numbering = Numbering::between(&first, self.services.interface());
         let incarnation = predecessor.services.incarnation() + 1;
-        let interface = Arc::clone(self.services.interface());
-        for (index, port) in interface.iter().enumerate() {
-            let old = predecessor.services.interface().iter().position(|other| {
-                (&other.name, other.kind, other.direction)
-                    == (&port.name, port.kind, port.direction)
-            });
-            let Some(old) = old else { continue };
-            let old_methods = method_names(&predecessor.services.interface()[old]);
-            let Some(end) = predecessor.services.port_mut(old) else {
-                continue;
-            };
-            let mut end = std::mem::replace(end, PortEnd::EventInput);
-            if let PortEnd::Required(calls) = &mut end {
-                reorder(calls, &old_methods, port);
-            }
-            if let Some(own) = self.services.port_mut(index) {
-                *own = end;
-            }
-        }
-        let inboxes: Vec<Inbox> = predecessor.services.take_inboxes();
-        for inbox in inboxes {
-            self.services.add_inbox(inbox);
-        }
+        self.take_ports(&mut predecessor.services);
         self.services.take_over(&mut predecessor.services);
         self.checkpoints = predecessor.checkpoints.take();
         self.status = Arc::clone(&predecessor.status);
@@ -112,6 +86,33 @@ impl Component {
             self.run_by(executor);
         }
         self.enter_incarnation(incarnation);
+    }
+
+    /// Takes the container's ends of all ports that the predecessor has, too: by their names, which
+    /// most often have the same numbers.
+    fn take_ports(&mut self, predecessor: &mut Services) {
+        let own = Arc::clone(self.services.interface());
+        let old = Arc::clone(predecessor.interface());
+        for (index, port) in own.iter().enumerate() {
+            let is_same = |other: &PortDescription| {
+                (&other.name, other.kind, other.direction)
+                    == (&port.name, port.kind, port.direction)
+            };
+            let found = match old.get(index) {
+                Some(other) if is_same(other) => Some(index),
+                _ => old.iter().position(is_same),
+            };
+            let Some(found) = found else { continue };
+            let ends = (self.services.port_mut(index), predecessor.port_mut(found));
+            let (Some(end), Some(old_end)) = ends else {
+                continue;
+            };
+            std::mem::swap(end, old_end);
+            if let PortEnd::Required(calls) = end {
+                reorder(calls, &old[found], port);
+            }
+        }
+        self.services.take_inboxes(predecessor);
     }
 
     /// Which instance of this name it is, counted from 1.
@@ -139,6 +140,11 @@ impl Component {
         self.constructed = true;
     }
 
+    /// Sees to it that its first callbacks need not wait for memory.
+    pub fn touch_memory(&self) {
+        self.instance.touch_memory();
+    }
+
     /// Initialised anew: READY, whatever it or its predecessor was before.
     pub fn enter_ready(&mut self) {
         self.enter_state(LifeCycleState::Ready);
@@ -162,43 +168,35 @@ impl Component {
     }
 
     /// Copies the newest certified checkpoint that was taken before `before_ns` to the registered
-    /// memory; whether there was one, and what a person should know of it.
-    pub fn restore_checkpoint(&mut self, before_ns: u64) -> (bool, String) {
+    /// memory.
+    pub fn restore_checkpoint(&mut self, before_ns: u64) -> Restored {
         let component = self.services.detectors().map(|all| all.component);
         let injections = &self.services.environment().injections;
         let corrupt =
             component.is_some_and(|it| injections.fails(it, ContainerFailure::CheckpointCorrupt));
         let Some(checkpoints) = &mut self.checkpoints else {
-            return (false, "no checkpoints are taken".to_owned());
+            return Restored::NotKept;
         };
         if corrupt {
             checkpoints.corrupt();
         }
         let (found, broken) = checkpoints.newest_before(before_ns);
-        let broken = match broken {
-            0 => String::new(),
-            broken => format!(" ({broken} newer with wrong checksum)"),
-        };
         let Some(found) = found else {
-            return (false, format!("no checkpoint to restore{broken}"));
+            return Restored::Nothing { broken };
         };
         let Some(memory) = self.services.critical() else {
-            return (false, "no memory is registered to restore".to_owned());
+            return Restored::NoMemory;
         };
-        if memory.size() != found.bytes.len() || !memory.copy_from(found.bytes) {
-            return (
-                false,
-                format!(
-                    "checkpoint {} not restored: it has {} bytes, the registered memory {}",
-                    found.sequence,
-                    found.bytes.len(),
-                    memory.size()
-                ),
-            );
-        }
         let sequence = found.sequence;
+        if memory.size() != found.bytes.len() || !memory.copy_from(found.bytes) {
+            return Restored::Misfit {
+                sequence,
+                bytes: found.bytes.len(),
+                registered: memory.size(),
+            };
+        }
         checkpoints.send_again(sequence, self.variant, self.services.incarnation());
-        (true, format!("checkpoint {sequence} restored{broken}"))
+        Restored::Done { sequence, broken }
     }
 
     /// From now on this same instance is another incarnation.
@@ -213,9 +211,17 @@ impl Component {
     }
 }
 
-fn method_names(port: &PortDescription) -> Vec<String> {
-    let names = port.methods.iter().map(|method| method.name.clone());
-    names.collect()
+/// Whether two libraries number the same ports and methods alike.
+fn are_numbered_alike(one: &[PortDescription], other: &[PortDescription]) -> bool {
+    let alike = |(one, other): (&PortDescription, &PortDescription)| {
+        one.name == other.name && have_methods_alike(one, other)
+    };
+    one.len() == other.len() && one.iter().zip(other).all(alike)
+}
+
+fn have_methods_alike(one: &PortDescription, other: &PortDescription) -> bool {
+    let names = one.methods.iter().map(|method| &method.name);
+    names.eq(other.methods.iter().map(|method| &method.name))
 }
 
 fn index_of<'name>(mut names: impl Iterator<Item = &'name String>, name: &str) -> u32 {
@@ -226,23 +232,28 @@ fn index_of<'name>(mut names: impl Iterator<Item = &'name String>, name: &str) -
 }
 
 /// Puts the bound methods of a required port into the order of another library.
-fn reorder(calls: &mut Calls, old: &[String], port: &PortDescription) {
+fn reorder(calls: &mut Calls, old: &PortDescription, port: &PortDescription) {
     debug_assert!(port.kind == PortKind::Service && port.direction == PortDirection::Output);
+    if have_methods_alike(old, port) {
+        return;
+    }
     let mut bound: Vec<_> = std::mem::take(&mut calls.methods)
         .into_iter()
         .map(Some)
         .collect();
-    let take = |name: &String| {
-        let index = old.iter().position(|other| other == name)?;
+    let take = |method: &MethodDescription| {
+        let index = old
+            .methods
+            .iter()
+            .position(|other| other.name == method.name)?;
         bound.get_mut(index)?.take()
     };
-    calls.methods = method_names(port).iter().filter_map(take).collect();
+    calls.methods = port.methods.iter().filter_map(take).collect();
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::library::MethodDescription;
 
     fn port(name: &str, methods: &[&str]) -> PortDescription {
         PortDescription {

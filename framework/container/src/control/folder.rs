@@ -100,15 +100,29 @@ pub(super) fn prepare(folder: &Path, application: &str) -> Result<PathBuf, Contr
         }
         _ => inspect(folder)?,
     }
+    remove_stale(folder)?;
+    let process = std::process::id();
+    let name = format!("{}-{process}{ENDING}", file_name_of(application));
+    Ok(folder.join(name))
+}
+
+/// Removes what processes of this user that were killed have left behind. What cannot be looked at is
+/// left as it is.
+pub fn remove_sockets_of_the_dead() {
+    let folder = user_folder();
+    if inspect(&folder).is_ok() {
+        let _left = remove_stale(&folder);
+    }
+}
+
+fn remove_stale(folder: &Path) -> Result<(), ControlError> {
     for stale in sockets(folder)? {
         if !is_alive(stale.process) {
             // Another process may have removed it first.
             let _gone = std::fs::remove_file(stale.socket);
         }
     }
-    let process = std::process::id();
-    let name = format!("{}-{process}{ENDING}", file_name_of(application));
-    Ok(folder.join(name))
+    Ok(())
 }
 
 /// A folder that another user could have put there, or can write to, is not used.

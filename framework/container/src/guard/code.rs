@@ -5,6 +5,9 @@ use std::ffi::{CStr, OsStr};
 use std::os::unix::ffi::OsStrExt as _;
 use std::path::PathBuf;
 
+/// Segments of programs and libraries begin at multiples of this, whatever the kernel's pages are.
+const PAGE_BYTES: usize = 64 * 1024;
+
 /// Addresses of executable code, end exclusive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CodeRange {
@@ -19,6 +22,15 @@ impl CodeRange {
     #[inline]
     pub fn contains(self, address: usize) -> bool {
         (self.start..self.end).contains(&address)
+    }
+
+    /// Lets the calling process see all of it now, so that who runs it first need not wait for pages.
+    pub(super) fn touch(self) {
+        let start = self.start / PAGE_BYTES * PAGE_BYTES;
+        let (start, length) = (start as *mut libc::c_void, self.end - start);
+        let advice = rustix::mm::Advice::LinuxPopulateRead;
+        // SAFETY: the range is code, which is only read.
+        let _he_waits = unsafe { rustix::mm::madvise(start, length, advice) };
     }
 }
 

@@ -9,6 +9,7 @@
 use std::cell::{Cell, UnsafeCell};
 use std::ptr;
 use std::sync::atomic::{AtomicBool, Ordering, compiler_fence};
+use std::time::Instant;
 
 use component_abi::{HostContext, Instance, Status};
 use corosensei::Yielder;
@@ -80,6 +81,8 @@ pub(super) struct HostSide {
     answering: AtomicBool,
     /// What happens at the next callback.
     injection: Cell<Option<Misbehaviour>>,
+    /// When that happened.
+    pub(super) misbehaved: Cell<Option<Instant>>,
     /// Whether the component has tried to change signals that the guard needs.
     meddled: Cell<bool>,
     exit: Cell<Exit>,
@@ -113,6 +116,7 @@ impl HostSide {
             answer: Cell::new(answer_nothing),
             answering: AtomicBool::new(false),
             injection: Cell::new(None),
+            misbehaved: Cell::new(None),
             meddled: Cell::new(false),
             exit: Cell::new(Exit::Abort),
             counts: Cell::new(false),

@@ -46,6 +46,7 @@ pub enum Misbehaviour {
 /// run after all.
 #[cold]
 pub(super) fn misbehave(side: &HostSide, misbehaviour: Misbehaviour) -> Option<Status> {
+    side.misbehaved.set(Some(Instant::now()));
     match misbehaviour {
         Misbehaviour::Panic => Some(fail(side, "injected panic", Status::PANICKED)),
         Misbehaviour::ErrorReturn(status) => {
@@ -65,12 +66,10 @@ pub(super) fn misbehave(side: &HostSide, misbehaviour: Misbehaviour) -> Option<S
         }
         Misbehaviour::Abort => interpose::abort(),
         Misbehaviour::Exit => interpose::exit(1),
-        Misbehaviour::Segfault => trap_in(|| {
-            // SAFETY: traps inside the section, which the handler takes for the component's code.
-            unsafe { steadfast_inject_read(ptr::null()) };
-        }),
+        Misbehaviour::Segfault => trap_in(read_null),
         Misbehaviour::BusError => {
             let page = page_without_backing();
+            side.misbehaved.set(Some(Instant::now()));
             trap_in(|| {
                 // SAFETY: as above.
                 unsafe { steadfast_inject_read(page) };
@@ -96,6 +95,12 @@ pub(super) fn misbehave(side: &HostSide, misbehaviour: Misbehaviour) -> Option<S
             unsafe { steadfast_inject_hang() };
         }),
     }
+}
+
+/// Runs into a null pointer.
+pub(super) fn read_null() {
+    // SAFETY: traps inside the section, which the handler takes for the component's code.
+    unsafe { steadfast_inject_read(ptr::null()) };
 }
 
 /// Whether an instruction is one of the section's. Called inside handlers.

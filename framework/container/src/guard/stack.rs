@@ -16,6 +16,10 @@ const STACK_BYTES: usize = 1 << 20;
 /// probed, so the guard must be wider than any sane frame.
 const GUARD_BYTES: usize = 1 << 18;
 
+/// So much of a stack is made memory ahead where its owner may be in a hurry: callbacks that need
+/// more wait for it.
+const TOUCHED_BYTES: usize = 64 * 1024;
+
 /// A mapped stack.
 pub(super) struct ComponentStack {
     base: StackPointer,
@@ -64,6 +68,16 @@ pub(super) struct StackMemory {
 }
 
 impl StackMemory {
+    /// Makes the upper part of it memory now, so that who runs there first need not wait for pages.
+    /// A system that cannot do that lets him wait.
+    pub(super) fn touch(self) {
+        let start = self.base.saturating_sub(TOUCHED_BYTES).max(self.limit);
+        let (start, length) = (start as *mut libc::c_void, self.base - start);
+        let advice = rustix::mm::Advice::LinuxPopulateWrite;
+        // SAFETY: the range is ours, and what is in it stays as it is.
+        let _he_waits = unsafe { rustix::mm::madvise(start, length, advice) };
+    }
+
     /// The word at an address; `None` outside the stack and in its guard area.
     pub(super) fn read(self, address: usize) -> Option<usize> {
         const WORD_BYTES: usize = size_of::<usize>();

@@ -11,8 +11,9 @@ use super::copy::guarded_copy;
 use super::registers::Registers;
 use super::trap::Trap;
 
-/// Copies of libraries that can be told apart; further ones are protected in their callbacks only.
-const MOST_CLAIMS: usize = 1024;
+/// Copies of libraries that can be told apart: those of a thousand components, each with standbys
+/// and recoveries. Further ones are protected in their callbacks only.
+const MOST_CLAIMS: usize = 8192;
 
 /// How much of a stack is searched for a return address: the C library's own frames between a
 /// component and a fault (`abort`, `memcpy`, `printf`) take less.

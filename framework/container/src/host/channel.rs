@@ -24,13 +24,15 @@ const TURN: usize = 0;
 const LIFE: usize = 64;
 /// Links the sign of life into the list that the kernel walks when the host dies.
 const LIFE_LINK: usize = 128;
+/// Number of the call that is to be broken off; 0: none.
+const CONDEMNED: usize = 176;
 /// How long the text is that the host left behind at last, and one; 0 while there is none.
 const TEXT: usize = 184;
 /// The words of a message.
 const WORDS: usize = 192;
 
 /// Words of a message.
-pub(super) const WORD_COUNT: usize = 16;
+pub(super) const WORD_COUNT: usize = 24;
 
 /// Turns.
 const HOST: u32 = 1;
@@ -140,6 +142,25 @@ impl Channel {
             return ForeignBytesMut::at(0, 0);
         }
         ForeignBytesMut::at(self.base.expose_provenance() + area.offset, area.size)
+    }
+
+    /// In the container: the call of this number is to be broken off.
+    pub(super) fn condemn(&self, number: u32) {
+        self.condemned().store(number, Ordering::Release);
+        let _ = futex::wake(self.condemned(), futex::Flags::empty(), 1);
+    }
+
+    /// In the host: sleeps until another call than that of this number is to be broken off; its
+    /// number.
+    pub(super) fn wait_for_condemnation(&self, last: u32) -> u32 {
+        loop {
+            let condemned = self.condemned().load(Ordering::Acquire);
+            if condemned != last {
+                return condemned;
+            }
+            // Woken, the word has changed, or a signal: look again in every case.
+            let _ = futex::wait(self.condemned(), futex::Flags::empty(), last, None);
+        }
     }
 
     /// In the host: there is a text of this size for the container, after the instance's end.
@@ -261,6 +282,11 @@ impl Channel {
     fn turn(&self) -> &AtomicU32 {
         // SAFETY: inside the header, aligned, and only used atomically.
         unsafe { AtomicU32::from_ptr(self.base.wrapping_add(TURN).cast()) }
+    }
+
+    fn condemned(&self) -> &AtomicU32 {
+        // SAFETY: as above.
+        unsafe { AtomicU32::from_ptr(self.base.wrapping_add(CONDEMNED).cast()) }
     }
 
     fn life(&self) -> &AtomicU32 {

@@ -4,11 +4,12 @@ use std::time::Duration;
 
 use component_abi::Status;
 
+use super::channel::WORD_COUNT;
 use super::message::{number, size};
 use crate::guard::{Ending, Exit, Misbehaviour, Registers, Trap};
 
 /// Words of an ending.
-const WORDS: usize = 14;
+const WORDS: usize = WORD_COUNT - 2;
 
 /// How a callback ended, with what else is to be said then.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,6 +20,8 @@ pub(super) struct HostEnding {
     pub(super) stray: Option<Trap>,
     /// Bytes that callbacks have allocated and not freed, where that is counted.
     pub(super) allocated_bytes: u64,
+    /// When it misbehaved as it was made to, by the machine's monotonic clock; 0 if it never did.
+    pub(super) misbehaved_ns: u64,
 }
 
 impl HostEnding {
@@ -34,14 +37,15 @@ impl HostEnding {
         words[0] = kind;
         words[1] = argument;
         words[2] = self.allocated_bytes;
+        words[14] = self.misbehaved_ns;
         if trap == 1
             && let Ending::Trapped(trap) = self.ending
         {
-            words[3..7].copy_from_slice(&trap_words(&trap));
+            words[3..8].copy_from_slice(&trap_words(&trap));
         }
         if let Some(stray) = self.stray {
-            words[7] = 1;
-            words[8..12].copy_from_slice(&trap_words(&stray));
+            words[8] = 1;
+            words[9..14].copy_from_slice(&trap_words(&stray));
         }
         words
     }
@@ -49,30 +53,32 @@ impl HostEnding {
     pub(super) fn from_words(words: [u64; WORDS]) -> Option<Self> {
         let ending = match words[0] {
             1 => Ending::Returned(Status(number(words[1])?)),
-            2 => Ending::Trapped(trap(&words[3..7])?),
+            2 => Ending::Trapped(trap(&words[3..8])?),
             3 => Ending::Left(Exit::Abort),
             4 => Ending::Left(Exit::Exit(number(words[1])?.cast_signed())),
             5 => Ending::Gone,
             _ => return None,
         };
-        let stray = match words[7] {
+        let stray = match words[8] {
             0 => None,
-            _ => Some(trap(&words[8..12])?),
+            _ => Some(trap(&words[9..14])?),
         };
         Some(Self {
             ending,
             stray,
             allocated_bytes: words[2],
+            misbehaved_ns: words[14],
         })
     }
 }
 
-fn trap_words(trap: &Trap) -> [u64; 4] {
+fn trap_words(trap: &Trap) -> [u64; 5] {
     [
         u64::from(trap.signal.cast_unsigned()),
         u64::from(trap.code.cast_unsigned()),
         trap.address as u64,
         u64::from(trap.stack_overflow),
+        trap.hang.map_or(0, crate::clock::nanoseconds),
     ]
 }
 
@@ -84,7 +90,7 @@ fn trap(words: &[u64]) -> Option<Trap> {
         address: size(words[2])?,
         registers: Registers::default(),
         stack_overflow: words[3] != 0,
-        hang: None,
+        hang: (words[4] > 0).then(|| Duration::from_nanos(words[4])),
     })
 }
 
@@ -138,7 +144,7 @@ mod tests {
             address: 0xdead_beef,
             registers: Registers::default(),
             stack_overflow: true,
-            hang: None,
+            hang: Some(Duration::from_millis(30)),
         };
         for ending in [
             Ending::Returned(Status::PANICKED),
@@ -152,6 +158,7 @@ mod tests {
                     ending,
                     stray,
                     allocated_bytes: 7,
+                    misbehaved_ns: 8,
                 };
                 assert_eq!(HostEnding::from_words(said.words()), Some(said));
             }

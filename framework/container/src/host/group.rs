@@ -2,15 +2,16 @@
 
 use std::collections::HashMap;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
-use super::process::HostProcess;
+use super::process::{HostProcess, Starter};
 
 /// The hosts of a container.
 #[derive(Debug)]
 pub struct Hosts {
-    executable: Option<PathBuf>,
+    /// Or why there is none.
+    starter: Result<Starter, String>,
     groups: Mutex<HashMap<String, Group>>,
 }
 
@@ -24,10 +25,15 @@ struct Group {
 }
 
 impl Hosts {
-    /// No host yet; they will be started by this executable, if there is one.
+    /// No host yet; they will be started by this executable, if there is one, and with policy and
+    /// priority of the calling thread.
     pub fn new(executable: Option<&Path>) -> Arc<Self> {
+        let starter = match executable {
+            None => Err("there is no executable `steadfast` to run it in".to_owned()),
+            Some(executable) => Starter::new(executable).map_err(|error| error.to_string()),
+        };
         Arc::new(Self {
-            executable: executable.map(ToOwned::to_owned),
+            starter,
             groups: Mutex::default(),
         })
     }
@@ -67,11 +73,9 @@ impl Hosts {
 
 impl Hosts {
     fn start(&self) -> io::Result<Arc<HostProcess>> {
-        let executable = self
-            .executable
-            .as_deref()
-            .ok_or_else(|| io::Error::other("there is no executable `steadfast` to run it in"))?;
-        HostProcess::start(executable).map(Arc::new)
+        let starter = self.starter.as_ref();
+        let starter = starter.map_err(|reason| io::Error::other(reason.clone()))?;
+        HostProcess::start(starter).map(Arc::new)
     }
 }
 

@@ -5,7 +5,7 @@ use std::os::fd::{AsFd as _, OwnedFd};
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 use std::thread::ThreadId;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use system_model::rules::ProcessLimits;
 
@@ -50,9 +50,12 @@ pub struct Hosted {
     /// The host's thread that runs the instance.
     thread: i32,
     inputs: Vec<Input>,
+    /// Of the last call.
+    number: u32,
     injection: Option<Misbehaviour>,
     forgets_allocations: bool,
     allocated_bytes: u64,
+    misbehaved: Option<Instant>,
     stray: Option<Trap>,
     /// Whose policy and priority the host's thread has.
     followed: Option<ThreadId>,
@@ -124,9 +127,11 @@ impl Hosted {
             executor,
             devices,
             thread,
+            number: 0,
             injection: None,
             forgets_allocations: false,
             allocated_bytes: 0,
+            misbehaved: None,
             stray: None,
             followed: None,
             scheduling: Scheduling::NORMAL,
@@ -172,11 +177,14 @@ impl Hosted {
         if is_cycle {
             answer::offer(&self.channel, &self.layout, &mut self.inputs, services);
         }
+        self.number = self.number.wrapping_add(1).max(1);
         let call = ToHost::Call(Call {
             callback: CallbackWords::of(&callback),
             injection: self.injection.take(),
             forgets_allocations: std::mem::take(&mut self.forgets_allocations),
             now_ns: services.answer(&crate::guard::Request::Now),
+            limit_ns: crate::clock::nanoseconds(limit.duration()),
+            number: self.number,
         });
         self.channel.say(&call.words());
         let watched = loss.watch().enter(CallLimit::NONE);
@@ -195,6 +203,11 @@ impl Hosted {
     /// Lets the component misbehave when its next callback is due.
     pub fn inject(&mut self, misbehaviour: Option<Misbehaviour>) {
         self.injection = misbehaviour;
+    }
+
+    /// When it misbehaved last as it was made to.
+    pub fn misbehaved(&self) -> Option<Instant> {
+        self.misbehaved
     }
 
     /// Bytes that callbacks have allocated and not freed.
@@ -263,8 +276,8 @@ impl Hosted {
                         let status = answer::answer(memory, question, inputs, devices, services);
                         patience.resume();
                         self.channel.say(&ToHost::Answer(status).words());
-                        if !patience.is_used_up(hurry) || patience.exceeded(hurry).is_none() {
-                            self.channel.hand_to_host();
+                        self.channel.hand_to_host();
+                        if !patience.is_used_up(hurry) {
                             continue;
                         }
                     }
@@ -276,9 +289,13 @@ impl Hosted {
                 },
                 Waited::Late => {}
             }
-            if let Some(limit) = patience.exceeded(hurry) {
+            if patience.has_given_up() {
                 self.kill();
-                return Ending::Trapped(hang(limit));
+                return Ending::Trapped(hang(limit.duration()));
+            }
+            if patience.exceeded(hurry) {
+                self.channel.condemn(self.number);
+                patience.give_grace();
             }
         }
     }
@@ -292,6 +309,10 @@ impl Hosted {
         services: &mut Services,
     ) -> Ending {
         self.allocated_bytes = ended.allocated_bytes;
+        if ended.misbehaved_ns > 0 {
+            let ago = monotonic_ns().saturating_sub(ended.misbehaved_ns);
+            self.misbehaved = Instant::now().checked_sub(Duration::from_nanos(ago));
+        }
         self.stray = self.stray.or(ended.stray);
         if let Ending::Returned(status) = ended.ending {
             if status != component_abi::Status::PANICKED {

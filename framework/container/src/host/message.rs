@@ -35,6 +35,10 @@ pub(super) struct Call {
     pub(super) forgets_allocations: bool,
     /// The container's clock, in nanoseconds, for as long as it stands still.
     pub(super) now_ns: u64,
+    /// How long it may take, in nanoseconds; 0 if there is no limit.
+    pub(super) limit_ns: u64,
+    /// The how many-th of the instance it is, by which it can be condemned; not 0.
+    pub(super) number: u32,
 }
 
 /// A callback without the addresses of its contents, which are another process's.
@@ -133,6 +137,8 @@ impl ToHost {
                     argument,
                     u64::from(call.forgets_allocations),
                     call.now_ns,
+                    call.limit_ns,
+                    call.number.into(),
                 ])
             }
             Self::Answer(status) => words(&[2, status]),
@@ -148,6 +154,8 @@ impl ToHost {
                 injection: ending::misbehaviour([words[6], words[7]])?,
                 forgets_allocations: words[8] != 0,
                 now_ns: words[9],
+                limit_ns: words[10],
+                number: number(words[11])?,
             }),
             2 => Self::Answer(words[1]),
             3 => Self::End,
@@ -312,6 +320,8 @@ mod tests {
                 injection: Some(Misbehaviour::Leak(9)),
                 forgets_allocations: true,
                 now_ns: 17,
+                limit_ns: 18,
+                number: 19,
             });
             assert_eq!(ToHost::from_words(&said.words()), Some(said));
         }

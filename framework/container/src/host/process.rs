@@ -5,7 +5,7 @@
 
 use std::io;
 use std::os::fd::{AsFd as _, BorrowedFd, OwnedFd};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
@@ -24,11 +24,53 @@ use crate::wake::Wake;
 /// How often a wait for its end looks.
 const LOOK: Duration = Duration::from_millis(1);
 
+/// Hosts that may wait to be started: one for every executor that recovers a component just now.
+const WAITING: usize = 64;
+
 /// A host process; killed when nobody needs it any more.
 #[derive(Debug)]
 pub(super) struct HostProcess {
     control: OwnedFd,
     life: Arc<Life>,
+}
+
+/// The thread that starts the threads that start hosts. These inherit its policy and niceness and
+/// hand them on to their hosts: they are those of the thread that made the starter, not of an
+/// executor, nor of the one that prepares standbys and gives way to everybody.
+#[derive(Debug)]
+pub(super) struct Starter {
+    wanted: Sender<Wanted>,
+}
+
+/// A host that is to be started: its end of the line, and whom to tell.
+struct Wanted {
+    far: OwnedFd,
+    tell: Sender<io::Result<Arc<Life>>>,
+}
+
+impl Starter {
+    /// Starts hosts by this executable, as the calling thread would.
+    ///
+    /// # Errors
+    /// If the system refuses a thread.
+    pub(super) fn new(executable: &Path) -> io::Result<Self> {
+        let (wanted, wants) = bounded::<Wanted>(WAITING);
+        let executable: Arc<Path> = executable.into();
+        std::thread::Builder::new()
+            .name("hosts".to_owned())
+            .spawn(move || {
+                for Wanted { far, tell } in wants {
+                    let executable = Arc::clone(&executable);
+                    let refused = tell.clone();
+                    let thread = std::thread::Builder::new().name("host".to_owned());
+                    let started = thread.spawn(move || attend(&executable, far, &tell));
+                    if let Err(error) = started {
+                        let _nobody_waits = refused.send(Err(error));
+                    }
+                }
+            })?;
+        Ok(Self { wanted })
+    }
 }
 
 /// What is known of the process.
@@ -69,17 +111,15 @@ impl Tenant {
 }
 
 impl HostProcess {
-    /// Starts a host by this executable.
+    /// Starts a host.
     ///
     /// # Errors
     /// If the system refuses the process or a thread.
-    pub(super) fn start(executable: &Path) -> io::Result<Self> {
+    pub(super) fn start(starter: &Starter) -> io::Result<Self> {
         let (control, far) = socket::pair()?;
         let (tell, told) = bounded(1);
-        let executable = executable.to_owned();
-        std::thread::Builder::new()
-            .name("host".to_owned())
-            .spawn(move || attend(&executable, far, &tell))?;
+        let asked = starter.wanted.send(Wanted { far, tell });
+        asked.map_err(|_gone| io::ErrorKind::BrokenPipe)?;
         let life = told.recv().map_err(|_gone| io::ErrorKind::BrokenPipe)??;
         Ok(Self { control, life })
     }
@@ -167,7 +207,7 @@ impl Life {
 }
 
 /// Starts the process, tells of it, and stays until it has ended.
-fn attend(executable: &PathBuf, far: OwnedFd, tell: &Sender<io::Result<Arc<Life>>>) {
+fn attend(executable: &Path, far: OwnedFd, tell: &Sender<io::Result<Arc<Life>>>) {
     let started = Command::new(executable)
         .arg(HOST_COMMAND)
         .stdin(Stdio::from(far))

@@ -3,6 +3,7 @@
 
 use std::os::fd::{AsFd as _, OwnedFd};
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -10,13 +11,16 @@ use super::channel::Channel;
 use super::ending::HostEnding;
 use super::limits;
 use super::message::{Call, CallbackWords, PLAIN, ToContainer, ToHost};
-use super::remote::Remote;
+use super::remote::{Remote, monotonic_ns};
 use super::robust::SignsOfLife;
 use super::setup::Setup;
 use super::socket;
+use crate::clock::nanoseconds;
 use crate::guard::loss::{Loss, losses, wait_for_loss};
-use crate::guard::{CallLimit, Callback, Ending, Guarded, ServiceCall, Trap};
+use crate::guard::{CallLimit, Callback, Ending, Guarded, ServiceCall, Trap, interrupt};
 use crate::library::LoadedLibrary;
+use crate::scheduling::outrank_components;
+use crate::watchdog::TICK;
 
 /// How often lost threads are looked for if no word of one came.
 const LOSS_PERIOD: Duration = Duration::from_millis(500);
@@ -26,6 +30,8 @@ struct Post {
     channel: &'static Channel,
     setup: Setup,
     loss: Loss,
+    /// Number of the call that is under way; 0: none.
+    call: AtomicU32,
 }
 
 type Posts = Arc<Mutex<Vec<Arc<Post>>>>;
@@ -72,6 +78,7 @@ fn serve() -> std::io::Result<()> {
             channel,
             setup,
             loss: Loss::default(),
+            call: AtomicU32::new(0),
         });
         posts
             .lock()
@@ -85,7 +92,7 @@ fn serve() -> std::io::Result<()> {
 }
 
 /// The thread of one instance.
-fn run(post: &Post, devices: OwnedFd) {
+fn run(post: &Arc<Post>, devices: OwnedFd) {
     let channel = post.channel;
     channel.wait_for_container();
     let setup = &post.setup;
@@ -112,6 +119,11 @@ fn run(post: &Post, devices: OwnedFd) {
         guarded.count_allocations();
     }
     post.loss.watch().attach();
+    let watched = Arc::clone(post);
+    // Without that thread hangs are not broken off here; the container ends the process instead.
+    let _ended_instead = std::thread::Builder::new()
+        .name("watchdog".to_owned())
+        .spawn(move || break_off_hangs(&watched));
     let mut remote = Remote::new(channel, setup.layout.clone(), devices, setup.clock_began_ns);
     let thread = rustix::thread::gettid().as_raw_nonzero().get();
     channel.say(&ToContainer::Loaded(thread).words(0));
@@ -126,6 +138,9 @@ fn run(post: &Post, devices: OwnedFd) {
             ending,
             stray: guarded.look_for_stray_fault(),
             allocated_bytes: guarded.allocated_bytes(),
+            misbehaved_ns: guarded.misbehaved().map_or(0, |acted| {
+                monotonic_ns().saturating_sub(nanoseconds(acted.elapsed()))
+            }),
         };
         channel.say(&ToContainer::Ended(ended).words(remote.take_written()));
         let scene = match ending {
@@ -141,6 +156,8 @@ fn run(post: &Post, devices: OwnedFd) {
 
 fn call_back(post: &Post, guarded: &mut Guarded, remote: &mut Remote, call: &Call) -> Ending {
     remote.now_ns = call.now_ns;
+    post.call.store(call.number, Ordering::Release);
+    let limit = CallLimit::from(Duration::from_nanos(call.limit_ns));
     guarded.inject(call.injection);
     if call.forgets_allocations {
         guarded.forget_allocations();
@@ -180,11 +197,31 @@ fn call_back(post: &Post, guarded: &mut Guarded, remote: &mut Remote, call: &Cal
             })
         }
     };
-    let ending = guarded.call(callback, CallLimit::NONE, &post.loss, remote);
+    let ending = guarded.call(callback, limit, &post.loss, remote);
+    post.call.store(0, Ordering::Release);
     if !reply.is_empty() {
         let _fits = post.channel.bytes(layout.to_container).copy_from(&reply);
     }
     ending
+}
+
+/// Breaks off callbacks as the container says: what the watchdog does to a guarded component.
+fn break_off_hangs(post: &Post) {
+    outrank_components();
+    let watch = post.loss.watch();
+    let mut condemned = 0;
+    loop {
+        condemned = post.channel.wait_for_condemnation(condemned);
+        // The generation first: it is that of the call if the call is still the condemned one.
+        let generation = watch.inside().generation;
+        while post.call.load(Ordering::Acquire) == condemned
+            && let Some(thread) = watch.thread()
+        {
+            watch.condemn(generation);
+            interrupt(thread);
+            std::thread::sleep(TICK);
+        }
+    }
 }
 
 /// Threads that were lost inside a component, outside its own code: the container is told in their
@@ -207,6 +244,7 @@ fn tell_loss(post: &Post, trap: Trap) {
         ending: Ending::Trapped(trap),
         stray: None,
         allocated_bytes: 0,
+        misbehaved_ns: 0,
     };
     post.channel.say(&ToContainer::Ended(ended).words(0));
     post.channel.hand_to_container();

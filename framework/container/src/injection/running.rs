@@ -260,12 +260,7 @@ fn set(world: Option<&World>, fault: WorldFault, present: bool) {
         WorldFault::EncoderDead(of) => RobotFault::EncoderDead(side(of)),
         WorldFault::CameraSmoke(density) => RobotFault::CameraSmoke(density),
     };
-    let mut simulation = world.lock();
-    if present {
-        simulation.set_fault(fault);
-    } else {
-        simulation.clear_fault(fault);
-    }
+    world.set_fault(fault, present);
 }
 
 /// The guard's word for it.

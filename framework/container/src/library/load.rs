@@ -2,19 +2,16 @@
 //! of a dead copy stay dead. Never unloaded: Rust code with thread-locals cannot be.
 #![allow(unsafe_code)] // the loader, and the descriptor of a foreign library
 
-use std::fs;
-use std::io::Write as _;
 use std::mem;
-use std::os::fd::AsRawFd as _;
 use std::path::{Path, PathBuf};
 
 use component_abi::{
     ABI_MAGIC, ABI_MAJOR, ABI_MINOR, ENTRY_SYMBOL, Header, LAYOUT_HASH, LibraryDescriptor,
 };
 use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
-use rustix::fs::{MemfdFlags, SealFlags};
 
 use super::LibraryError;
+use super::copy::copy;
 use super::description::{ComponentDescription, describe};
 use crate::guard::{CodeRange, LoadedObject};
 
@@ -73,30 +70,20 @@ impl LoadedLibrary {
     }
 }
 
-/// Copies the file to sealed memory and loads it from there under a name that is used once. The
-/// memory file stays open: the loader compares names, and a number used again would give the old
-/// library.
+/// Loads a copy of the file from sealed memory. The memory file stays open: the loader compares
+/// names, and a number used again would give the old library.
 fn open_copy(path: &Path) -> Result<Library, LibraryError> {
-    let unreadable = |error: std::io::Error| LibraryError::Unreadable {
+    let copied = copy(path).map_err(|error| LibraryError::Unreadable {
         path: path.to_owned(),
         error,
-    };
-    let content = fs::read(path).map_err(unreadable)?;
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let flags = MemfdFlags::CLOEXEC | MemfdFlags::ALLOW_SEALING;
-    let memory =
-        rustix::fs::memfd_create(name.as_ref(), flags).map_err(|error| unreadable(error.into()))?;
-    let mut memory = fs::File::from(memory);
-    memory.write_all(&content).map_err(unreadable)?;
-    let seals = SealFlags::SEAL | SealFlags::SHRINK | SealFlags::GROW | SealFlags::WRITE;
-    rustix::fs::fcntl_add_seals(&memory, seals).map_err(|error| unreadable(error.into()))?;
-    let address = format!("/proc/self/fd/{}", memory.as_raw_fd());
+    });
+    let (memory, address) = copied?;
     // SAFETY: runs the library's constructors; the probe has run them before in a process of its
     // own, if the container probes.
     let library = unsafe { Library::open(Some(&address), RTLD_NOW | RTLD_LOCAL) };
     let library = library.map_err(|error| LibraryError::NotALibrary {
         path: path.to_owned(),
-        reason: loader_words(&error, &address),
+        reason: loader_words(&error, &address.to_string_lossy()),
     })?;
     mem::forget(memory);
     Ok(library)

@@ -9,7 +9,7 @@ use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::guard::loss::LostThread;
 use crate::lane::{Lane, Work};
-use crate::supervision::Supervisor;
+use crate::supervision::{Supervisor, rehearse};
 use crate::wake::Wake;
 
 /// An executor that nothing is due for sleeps at most this long, so that it notices being stopped
@@ -114,6 +114,8 @@ impl RealTime {
 impl Work for RealTime {
     fn run(&mut self, lane: &Lane) {
         if self.release_ns == 0 {
+            // Without room for it the first fault takes a little longer, and nothing else.
+            let _unrehearsed = rehearse(lane);
             self.release_ns = self.environment.clock.now_ns();
         }
         while self.executor.is_in_cycle() || self.wait(lane) {

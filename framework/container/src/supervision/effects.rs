@@ -13,11 +13,12 @@ use super::supervisor::{Core, Supervisor};
 use crate::clock::nanoseconds;
 
 impl Supervisor {
-    pub(super) fn carry_out(&self, core: &mut Core, effect: Effect, took: Duration) {
+    pub(super) fn carry_out(&self, core: &mut Core, effect: Effect) {
         match effect {
             Effect::Act(planned) => self.act(core, &planned),
             Effect::Abandon(action) => core.later.retain(|(_, order)| order.action != Some(action)),
-            Effect::Record(verdict) => self.record(core, *verdict, took),
+            // Asked for by itself: see `Self::write_records`.
+            Effect::Record(_) => {}
             Effect::Rearm => {
                 for actuator in self.emergency.rearm(self.environment.clock.now_ns()) {
                     self.give(Order {
@@ -127,9 +128,7 @@ impl Supervisor {
 /// A component that has missed its heartbeats may be hanging long before its deadline: how long a
 /// callback of its executor may take while the order waits.
 fn hurry(manager: &FaultManager, planned: &PlannedAction) -> Option<Duration> {
-    let mut verdicts = manager.verdicts();
-    let verdict = verdicts.find(|verdict| verdict.id == planned.fault)?;
-    match verdict.evidence {
+    match manager.verdict(planned.fault)?.evidence {
         Evidence::Heartbeat { period_ms, .. } => Some(Duration::from_secs_f64(period_ms / 1e3)),
         _ => None,
     }

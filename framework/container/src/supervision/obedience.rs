@@ -7,7 +7,7 @@ use system_model::injection::ContainerFailure;
 use system_model::life_cycle::{LifeCycleState, Operation};
 use system_model::specification::ExecutionKind;
 
-use super::recovery::{replace, reset, words};
+use super::recovery::{Recovered, replace, reset, words};
 use super::{Order, Supervisor, Task};
 use crate::component::{Component, ComponentCell};
 use crate::lane::Lane;
@@ -16,52 +16,48 @@ use crate::lane::Lane;
 /// as long as such a call may take by default.
 const ENTER_LIMIT: Duration = Duration::from_secs(1);
 
-/// What is left to do after an order was carried out and its end reported.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Afterwards {
-    /// Nothing.
-    Nothing,
-    /// The component was recovered.
-    Recovered {
-        /// Whether it is to do at once what it failed to do: it was in ERROR, and has worked since
-        /// its last recovery. One that fails again and again waits for its next cycle, so that what
-        /// disturbs it may pass.
-        at_once: bool,
-    },
+/// What was done, in words for who has time to read them.
+enum Outcome {
+    Recovered(Recovered),
+    Other(String),
 }
 
-/// Carries an order out and reports how it ended.
+/// Carries an order out, and reports how it ended; whether the component was recovered by it. Who
+/// was recovered works before anything is told: `updates` says whether its `onUpdated` does not
+/// come by itself in this cycle.
 pub fn obey(
     order: &Order,
     cell: &ComponentCell,
+    kind: ExecutionKind,
+    updates: bool,
     supervisor: &Supervisor,
     lane: &Lane,
-) -> Afterwards {
+) -> bool {
     let Some(mut component) = cell.enter(lane.token(), ENTER_LIMIT) else {
         if let Task::Tap { .. } = order.task {
             supervisor.notice("a fault cannot be injected: a service call is inside its component");
         }
-        end(
-            order.action,
-            supervisor,
-            Err("a service call is inside it".to_owned()),
-            0,
-        );
-        return Afterwards::Nothing;
+        let busy = Err("a service call is inside it".to_owned());
+        end(order.action, supervisor, busy, 0);
+        return false;
     };
+    // One that fails again and again waits for its next cycle, so that what disturbs it may pass:
+    // at once works who was in ERROR, and has worked since its last recovery.
     let at_once = component.state() == LifeCycleState::Error && !component.is_unproven();
     let result = perform(order, &mut component, supervisor, lane);
-    let recovered =
-        result.is_ok() && matches!(order.task, Task::Reset { .. } | Task::Replace { .. });
+    let recovered = matches!(result, Ok(Outcome::Recovered(_)));
+    let incarnation = component.incarnation();
     if recovered {
         component.expect_proof();
+        work_at_once(&mut component, kind, at_once, updates, supervisor, lane);
     }
-    end(order.action, supervisor, result, component.incarnation());
-    if recovered {
-        Afterwards::Recovered { at_once }
-    } else {
-        Afterwards::Nothing
-    }
+    drop(component);
+    let result = result.map(|outcome| match outcome {
+        Outcome::Recovered(recovered) => recovered.to_string(),
+        Outcome::Other(note) => note,
+    });
+    end(order.action, supervisor, result, incarnation);
+    recovered
 }
 
 /// The thread was lost while it carried an order out.
@@ -75,7 +71,7 @@ fn perform(
     component: &mut Component,
     supervisor: &Supervisor,
     lane: &Lane,
-) -> Result<String, String> {
+) -> Result<Outcome, String> {
     let loss = lane.loss();
     let Some(standbys) = supervisor.standbys(order.component) else {
         return Err("there is no such component".to_owned());
@@ -85,14 +81,19 @@ fn perform(
     if recovers && injections.fails(order.component, ContainerFailure::RecoveryFails) {
         return Err("injected failure of the recovery".to_owned());
     }
-    match &order.task {
+    let done = match &order.task {
         Task::Reset {
             checkpoint_before_ns,
-        } => reset(component, standbys, *checkpoint_before_ns, loss),
+        } => {
+            return reset(component, standbys, *checkpoint_before_ns, loss).map(Outcome::Recovered);
+        }
         Task::Replace {
             variant,
             checkpoint_before_ns,
-        } => replace(component, standbys, *variant, *checkpoint_before_ns, loss),
+        } => {
+            return replace(component, standbys, *variant, *checkpoint_before_ns, loss)
+                .map(Outcome::Recovered);
+        }
         Task::Stop => stop(component, lane),
         Task::Destroy => destroy(component, lane),
         Task::EmergencyStop { power_off } => {
@@ -110,7 +111,8 @@ fn perform(
             component.services_mut().tap(*port);
             Ok(String::new())
         }
-    }
+    };
+    done.map(Outcome::Other)
 }
 
 /// A component that is in ERROR or was never started runs no more than a stopped one.
@@ -164,16 +166,14 @@ fn stop_actuator(
 }
 
 /// A recovered component works at once, if it is to. A passive one works whenever it is asked.
-pub fn work_at_once(
-    cell: &ComponentCell,
+fn work_at_once(
+    component: &mut Component,
     kind: ExecutionKind,
     at_once: bool,
+    updates: bool,
     supervisor: &Supervisor,
     lane: &Lane,
 ) {
-    let Some(mut component) = cell.enter(lane.token(), ENTER_LIMIT) else {
-        return;
-    };
     if kind == ExecutionKind::Passive {
         component.prove();
         return;
@@ -181,7 +181,7 @@ pub fn work_at_once(
     if at_once {
         let now_ns = supervisor.environment().clock.now_ns();
         component.execute(now_ns, lane.loss());
-        if component.is_active() {
+        if updates && component.is_active() {
             component.updated(lane.loss());
         }
     }
@@ -190,7 +190,9 @@ pub fn work_at_once(
 /// Another standby for the one that was used: now where time is simulated, else in the background.
 pub fn refill(component: usize, supervisor: &Supervisor, lane: &Lane) {
     if supervisor.environment().clock.is_simulated() {
-        supervisor.prepare_standbys(component, lane.loss());
+        if let Err(reason) = supervisor.prepare_standbys(component, lane.loss()) {
+            supervisor.notice(&reason);
+        }
     } else {
         supervisor.want_standbys(component);
     }

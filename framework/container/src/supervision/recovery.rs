@@ -2,14 +2,36 @@
 //! be called, else by a fresh instance; by the call order of the OPRoS life cycle (Ahn et al. 2012,
 //! section 3.4 and figure 9).
 
+use std::fmt;
+
 use system_model::life_cycle::{LifeCycleState, Operation};
 
 use super::standby::Standbys;
-use crate::component::{Component, OperationError};
+use crate::component::{Component, OperationError, Restored};
 use crate::guard::Callback;
 use crate::guard::loss::Loss;
 
-/// Recovers a component by its own library. The note says what a person may want to know.
+/// What a person may want to know of a recovery.
+#[derive(Debug, Clone, Copy)]
+pub struct Recovered {
+    /// By what; empty if in place.
+    by: &'static str,
+    /// What became of its checkpoint; none if none was wanted.
+    checkpoint: Option<Restored>,
+}
+
+impl fmt::Display for Recovered {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.by)?;
+        match self.checkpoint {
+            None => Ok(()),
+            Some(checkpoint) if self.by.is_empty() => write!(formatter, "{checkpoint}"),
+            Some(checkpoint) => write!(formatter, ", {checkpoint}"),
+        }
+    }
+}
+
+/// Recovers a component by its own library.
 ///
 /// # Errors
 /// Why it did not succeed; the component is in ERROR then.
@@ -18,7 +40,7 @@ pub fn reset(
     standbys: &Standbys,
     checkpoint_before_ns: Option<u64>,
     loss: &Loss,
-) -> Result<String, String> {
+) -> Result<Recovered, String> {
     if !component.is_alive() {
         return replace(
             component,
@@ -42,9 +64,9 @@ pub fn reset(
             .call_back(callback, name, loss)
             .map_err(|error| words(name, &error))?;
     }
-    let note = restore(component, checkpoint_before_ns, loss)?;
+    let checkpoint = restore(component, checkpoint_before_ns, loss)?;
     start(component, loss)?;
-    Ok(note)
+    Ok(Recovered { by: "", checkpoint })
 }
 
 /// Puts a fresh instance of one of the component's libraries in its place.
@@ -57,8 +79,8 @@ pub fn replace(
     variant: usize,
     checkpoint_before_ns: Option<u64>,
     loss: &Loss,
-) -> Result<String, String> {
-    let (mut fresh, readiness) = standbys.take(variant)?;
+) -> Result<Recovered, String> {
+    let (mut fresh, by) = standbys.take(variant)?;
     if component.is_alive() {
         give_up(component, loss);
     }
@@ -67,18 +89,14 @@ pub fn replace(
         fresh.services_mut().set_detectors(detectors);
     }
     let prepared = standbys.bring_up(&mut fresh, loss);
-    prepared.map_err(|reason| format!("{readiness}: {reason}"))?;
+    prepared.map_err(|reason| format!("{by}: {reason}"))?;
     fresh.succeed(component);
     fresh.set_variant(variant);
-    let mut predecessor = std::mem::replace(component, fresh);
-    // Nothing of a quarantined instance is freed; one that could be called has been destroyed.
-    predecessor.retire();
-    let note = restore(component, checkpoint_before_ns, loss)?;
+    std::mem::swap(component, &mut *fresh);
+    standbys.retire(fresh);
+    let checkpoint = restore(component, checkpoint_before_ns, loss)?;
     start(component, loss)?;
-    Ok(match note.as_str() {
-        "" => readiness.to_owned(),
-        note => format!("{readiness}, {note}"),
-    })
+    Ok(Recovered { by, checkpoint })
 }
 
 /// The old instance lets go of its devices. That it fails at that is on record and changes nothing.
@@ -101,17 +119,17 @@ fn restore(
     component: &mut Component,
     checkpoint_before_ns: Option<u64>,
     loss: &Loss,
-) -> Result<String, String> {
+) -> Result<Option<Restored>, String> {
     let Some(before_ns) = checkpoint_before_ns else {
-        return Ok(String::new());
+        return Ok(None);
     };
-    let (restored, note) = component.restore_checkpoint(before_ns);
-    if restored {
+    let restored = component.restore_checkpoint(before_ns);
+    if matches!(restored, Restored::Done { .. }) {
         component
             .call_back(Callback::Recover, "onRecover", loss)
             .map_err(|error| words("onRecover", &error))?;
     }
-    Ok(note)
+    Ok(Some(restored))
 }
 
 /// Why an operation failed, in words.

@@ -2,7 +2,7 @@
 //! milliseconds of reading and parsing, and added to the verdict when they are there.
 
 use std::collections::VecDeque;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 
 use crossbeam::queue::ArrayQueue;
 use fault_manager::{Evidence, Verdict};
@@ -20,6 +20,8 @@ const KEPT: usize = 256;
 pub struct Scenes {
     waiting: ArrayQueue<Left>,
     known: Mutex<VecDeque<Known>>,
+    /// Whose backtraces were found and are not on record.
+    found: ArrayQueue<(String, u32)>,
 }
 
 /// A scene that a component left.
@@ -42,6 +44,7 @@ impl Default for Scenes {
         Self {
             waiting: ArrayQueue::new(WAITING),
             known: Mutex::default(),
+            found: ArrayQueue::new(WAITING),
         }
     }
 }
@@ -56,9 +59,11 @@ impl Scenes {
         });
     }
 
-    /// Finds the backtrace of the scene that waits longest, if there is one; whose it is.
-    pub(super) fn look_at_one(&self) -> Option<(String, u32)> {
-        let left = self.waiting.pop()?;
+    /// Finds the backtrace of the scene that waits longest; whether there was one.
+    pub(super) fn look_at_one(&self) -> bool {
+        let Some(left) = self.waiting.pop() else {
+            return false;
+        };
         let backtrace = left.scene.backtrace();
         let mut known = self.known();
         if known.len() >= KEPT {
@@ -69,10 +74,19 @@ impl Scenes {
             incarnation: left.incarnation,
             backtrace,
         });
-        Some((left.component, left.incarnation))
+        drop(known);
+        // One too many is in no record but those that are written from now on.
+        let _unrecorded = self.found.push((left.component, left.incarnation));
+        true
     }
 
-    /// Adds the backtrace to a verdict that has none, if it is known by now.
+    /// Whose backtrace was found and is not on record: its component and incarnation.
+    pub(super) fn take_found(&self) -> Option<(String, u32)> {
+        self.found.pop()
+    }
+
+    /// Adds the backtrace to a verdict that has none, if it is known by now. Waits for nobody: what
+    /// is just being added comes with the next record.
     pub(super) fn complete(&self, verdict: &mut Verdict) {
         let Evidence::Exception { backtrace, .. } = &mut verdict.evidence else {
             return;
@@ -80,7 +94,11 @@ impl Scenes {
         if !backtrace.is_empty() {
             return;
         }
-        let known = self.known();
+        let known = match self.known.try_lock() {
+            Ok(known) => known,
+            Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
+            Err(TryLockError::WouldBlock) => return,
+        };
         let found = known.iter().rev().find(|known| {
             (known.component.as_str(), known.incarnation)
                 == (verdict.component.as_str(), verdict.incarnation)

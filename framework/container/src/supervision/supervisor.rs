@@ -5,18 +5,19 @@
 //! to be done with a component is an order to its executor.
 
 use std::collections::VecDeque;
-use std::sync::atomic::AtomicU64;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
 
 use crossbeam::channel::{Receiver, Sender, bounded};
-use fault_manager::{FaultId, FaultManager, Observation, Verdict};
+use fault_manager::{Effect, FaultId, FaultManager, Observation, Verdict};
 use system_model::specification::ManagerPort;
 
 use super::emergency::Emergency;
 use super::orders::{Order, Orders};
 use super::standby::Standbys;
 use super::{ManagerOutputs, Monitors};
+use crate::clock::nanoseconds;
 use crate::component::Environment;
 use crate::event_log::Event;
 use crate::guard::loss::Loss;
@@ -38,6 +39,8 @@ pub struct Supervisor {
     pub(super) monitors: Mutex<Monitors>,
     /// Wakes the thread that looks after time.
     pub(super) wake: Wake,
+    /// When that one looks again, in nanoseconds.
+    pub(super) looks_again_ns: AtomicU64,
     /// When injections were looked at last, in nanoseconds.
     pub(super) injected_ns: AtomicU64,
     /// Components of which a standby was used, for the thread that prepares another.
@@ -51,9 +54,18 @@ pub(super) struct Core {
     /// How long decisions took, by fault, in microseconds.
     decisions: VecDeque<(FaultId, u64)>,
     pub(super) outputs: ManagerOutputs,
+    /// How long the last decision took.
+    took: Duration,
 }
 
 impl Core {
+    /// When the fault manager, or an order, wants the next tick, in nanoseconds.
+    pub(super) fn due_ns(&self) -> Option<u64> {
+        let later = self.later.iter().map(|(time_ns, _)| *time_ns).min();
+        let manager = self.manager.due().map(nanoseconds);
+        later.into_iter().chain(manager).min()
+    }
+
     /// How long the decision about a fault took, if it was timed.
     fn decision_us(&self, id: FaultId) -> Option<u64> {
         let known = self.decisions.iter().find(|(known, _)| *known == id)?;
@@ -89,6 +101,7 @@ impl Supervisor {
                 later: Vec::new(),
                 decisions: VecDeque::new(),
                 outputs: ManagerOutputs::default(),
+                took: Duration::ZERO,
             }),
             orders,
             standbys,
@@ -96,27 +109,33 @@ impl Supervisor {
             emergency,
             monitors: Mutex::new(monitors),
             wake: Wake::default(),
+            looks_again_ns: AtomicU64::new(u64::MAX),
             injected_ns: AtomicU64::new(0),
             wanted,
         };
         (supervisor, wants)
     }
 
-    /// Prepares all standbys of a component that the rules want and are not there. One that cannot
-    /// be prepared is made when it is needed.
-    pub fn prepare_standbys(&self, component: usize, loss: &Loss) {
+    /// Prepares all standbys of a component that the rules want and are not there.
+    ///
+    /// # Errors
+    /// Which one could not be prepared, and why; then it is made when it is needed.
+    pub fn prepare_standbys(&self, component: usize, loss: &Loss) -> Result<(), String> {
         let Some(standbys) = self.standbys.get(component) else {
-            return;
+            return Ok(());
         };
+        standbys.free_retired();
+        let mut failure = Ok(());
         for variant in standbys.wanting() {
             if let Err(reason) = standbys.prepare(variant, loss) {
                 let name = &standbys.factory().variants()[variant].specification;
-                self.notice(&format!(
+                failure = Err(format!(
                     "no standby '{}' for '{}' could be prepared: {reason}",
                     name.type_name, name.name
                 ));
             }
         }
+        failure
     }
 
     /// Asks the thread that prepares standbys for what is missing.
@@ -165,22 +184,20 @@ impl Supervisor {
         verdicts
     }
 
-    /// Finds the backtrace of a component that was taken off, if one waits for that, and puts the
-    /// verdict on record again with it; whether there was one.
-    pub(super) fn find_backtrace(&self) -> bool {
-        let Some((component, incarnation)) = self.environment.scenes.look_at_one() else {
-            return false;
-        };
-        let mut core = self.lock();
-        let verdicts = core.manager.verdicts();
-        let of_it = verdicts
-            .filter(|it| (it.component == component) && it.incarnation == incarnation)
-            .last()
-            .cloned();
-        if let Some(verdict) = of_it {
-            self.record(&mut core, verdict, Duration::ZERO);
+    /// Puts the verdicts on record again whose backtraces were found since the last time.
+    pub fn record_backtraces(&self) {
+        while let Some((component, incarnation)) = self.environment.scenes.take_found() {
+            let mut core = self.lock();
+            let verdicts = core.manager.verdicts();
+            let of_it = verdicts
+                .filter(|it| (it.component == component) && it.incarnation == incarnation)
+                .last()
+                .cloned();
+            if let Some(verdict) = of_it {
+                let now_ns = self.environment.clock.now_ns();
+                self.record(&mut core, verdict, Duration::ZERO, now_ns);
+            }
         }
-        true
     }
 
     /// Whether the emergency stop is latched.
@@ -196,25 +213,46 @@ impl Supervisor {
                 // Whoever is at it may only be reading: the thread that looks after time looks again.
                 Err(TryLockError::WouldBlock) => return self.rouse(),
             };
+            let simulated = self.environment.clock.is_simulated();
+            self.write_records(&mut core);
+            let mut urgent = false;
             while let Some(observation) = self.environment.observations.take() {
                 let now = self.environment.clock.now();
                 let start = Instant::now();
-                let effects = core.manager.observe(now, observation);
-                let took = if self.environment.clock.is_simulated() {
-                    Duration::ZERO
-                } else {
-                    start.elapsed()
-                };
+                let effects = core.manager.react(now, observation);
+                if !simulated {
+                    core.took = start.elapsed();
+                }
                 for effect in effects {
-                    self.carry_out(&mut core, effect, took);
+                    urgent |= matches!(&effect, Effect::Act(planned) if planned.not_before <= now);
+                    self.carry_out(&mut core, effect);
+                }
+                if simulated {
+                    // Nobody waits, and the record tells everything in its order.
+                    self.write_records(&mut core);
                 }
             }
+            if !urgent {
+                self.write_records(&mut core);
+            }
+            let due_ns = core.due_ns();
             drop(core);
-            self.rouse();
+            if due_ns.is_some_and(|due_ns| due_ns < self.looks_again_ns.load(Ordering::SeqCst)) {
+                self.rouse();
+            }
         }
     }
 
-    pub(super) fn record(&self, core: &mut Core, mut verdict: Verdict, took: Duration) {
+    /// Puts the verdicts on record that have changed.
+    pub(super) fn write_records(&self, core: &mut Core) {
+        let (at_ns, took) = (self.environment.clock.now_ns(), core.took);
+        let changed: Vec<Box<Verdict>> = core.manager.records().collect();
+        for verdict in changed {
+            self.record(core, *verdict, took, at_ns);
+        }
+    }
+
+    fn record(&self, core: &mut Core, mut verdict: Verdict, took: Duration, at_ns: u64) {
         self.environment.scenes.complete(&mut verdict);
         let known = core.decision_us(verdict.id);
         if known.is_none() {
@@ -223,10 +261,8 @@ impl Supervisor {
             self.raise(core, ManagerPort::Fault);
         }
         verdict.decision_us += known.unwrap_or_else(|| core.time_decision(verdict.id, took));
-        self.environment.events.record(
-            self.environment.clock.now_ns(),
-            Event::Verdict(Box::new(verdict)),
-        );
+        let event = Event::Verdict(Box::new(verdict));
+        self.environment.events.record(at_ns, event);
     }
 
     pub(super) fn lock(&self) -> MutexGuard<'_, Core> {

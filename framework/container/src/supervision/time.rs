@@ -23,8 +23,10 @@ impl Supervisor {
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .look(Duration::from_nanos(now_ns), &self.environment.observations);
+        self.record_backtraces();
         let (due, wants_tick) = {
             let mut core = self.lock();
+            self.write_records(&mut core);
             let mut due = Vec::new();
             core.later.retain(|(time_ns, order)| {
                 let is_due = *time_ns <= now_ns;
@@ -50,9 +52,7 @@ impl Supervisor {
 
     /// When the next tick is due, in nanoseconds of the container's clock.
     pub fn due_ns(&self) -> Option<u64> {
-        let core = self.lock();
-        let later = core.later.iter().map(|(time_ns, _)| *time_ns).min();
-        let manager = core.manager.due().map(nanoseconds);
+        let decisions = self.lock().due_ns();
         let monitors = self
             .monitors
             .lock()
@@ -63,15 +63,23 @@ impl Supervisor {
             let period_ns = nanoseconds(LOOK_PERIOD);
             (self.injected_ns.load(Ordering::Relaxed) / period_ns + 1) * period_ns
         });
-        [later, manager, monitors, observations, injections]
+        [decisions, monitors, observations, injections]
             .into_iter()
             .flatten()
             .min()
     }
 
-    /// Sleeps until something may be due, at most `limit`.
-    pub fn sleep(&self, limit: Duration) {
-        self.wake.sleep(limit);
+    /// Sleeps until something may be due, at most `limit`. Whoever makes something due earlier
+    /// wakes it, and nobody else: that may be an executor in a hurry.
+    pub fn sleep_until_due(&self, limit: Duration) {
+        // Said first: what becomes due while this thread looks must wake it.
+        self.looks_again_ns.store(u64::MAX, Ordering::SeqCst);
+        let due_ns = self.due_ns().unwrap_or(u64::MAX);
+        let now_ns = self.environment.clock.now_ns();
+        let again_ns = due_ns.min(now_ns + nanoseconds(limit));
+        self.looks_again_ns.store(again_ns, Ordering::SeqCst);
+        self.wake
+            .sleep(Duration::from_nanos(again_ns.saturating_sub(now_ns)));
         self.wake.take();
     }
 

@@ -154,7 +154,11 @@ impl Agenda {
             Step::Standby => {
                 drop(component);
                 self.prepares.store(true, Ordering::Relaxed);
-                self.supervisor.prepare_standbys(index, lane.loss());
+                if let Err(reason) = self.supervisor.prepare_standbys(index, lane.loss()) {
+                    // Where time is real it is tried again in the background.
+                    self.supervisor.notice(&reason);
+                    self.supervisor.want_standbys(index);
+                }
                 self.prepares.store(false, Ordering::Relaxed);
                 return;
             }

@@ -5,13 +5,16 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crossbeam::channel::Sender;
+use system_model::injection::Injection;
 
+use super::StartError;
 use crate::assembly::LibraryOptions;
 use crate::clock::Clock;
 use crate::component::Environment;
 use crate::device::Devices;
-use crate::event_log::{Event, EventLog};
-use crate::injection::Injections;
+use crate::event_log::{Event, EventLog, EventWriter};
+use crate::injection::{Injections, still_to_come};
+use crate::outer_supervision::Supervised;
 use crate::schedule::BusyTime;
 use crate::supervision::{Observations, Scenes};
 use crate::world::World;
@@ -35,10 +38,16 @@ impl ClockKind {
     }
 
     /// What components share that run by this clock.
-    pub(super) fn environment(self, events: EventLog, world: Option<Arc<World>>) -> Environment {
+    /// `run_time`: how long the run has lasted when this container comes into it.
+    pub(super) fn environment(
+        self,
+        events: EventLog,
+        world: Option<Arc<World>>,
+        run_time: Duration,
+    ) -> Environment {
         Environment {
             clock: match self {
-                ClockKind::Real => Clock::real(),
+                ClockKind::Real => Clock::real_since(run_time),
                 ClockKind::Simulated => Clock::simulated(),
             },
             events,
@@ -69,6 +78,8 @@ pub struct RunOptions {
     pub libraries: LibraryOptions,
     /// Where checkpoints lie that outlive the container.
     pub state: StateOptions,
+    /// The parent that supervises this container, if one does.
+    pub supervised: Option<Arc<Supervised>>,
 }
 
 /// Where checkpoints lie that outlive the container, and what becomes of those that are there.
@@ -78,4 +89,29 @@ pub struct StateOptions {
     pub folder: Option<PathBuf>,
     /// Those that are there are removed, not restored.
     pub fresh: bool,
+}
+
+impl RunOptions {
+    /// What of a run's injections this container makes: one that goes on where another has died does
+    /// not begin anew.
+    pub(super) fn injections(&self, all: &[Injection]) -> Vec<Injection> {
+        let before = self.supervised.as_ref().filter(|it| it.restarts() > 0);
+        let run_time = before.map_or(Duration::ZERO, |it| it.run_time());
+        let to_come = |injection| still_to_come(injection, run_time);
+        all.iter().filter_map(to_come).collect()
+    }
+
+    /// Opens the event file: a fresh one, or that of the container before.
+    pub(super) fn open_events(&mut self) -> Result<(EventLog, EventWriter), StartError> {
+        let (path, echo) = (self.events.as_deref(), self.echo.take());
+        let waits = self.clock == ClockKind::Simulated;
+        let opened = match self.supervised {
+            Some(_) => EventLog::resume(path, waits, echo),
+            None => EventLog::open(path, waits, echo),
+        };
+        opened.map_err(|error| StartError::Output {
+            path: self.events.clone().unwrap_or_default(),
+            error,
+        })
+    }
 }

@@ -1,20 +1,14 @@
 //! What only runs by the machine's clock need: a thread for the world, priorities, fine timers.
 
 use std::io;
-use std::num::NonZeroU64;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 
-use system_model::specification::SchedulingPolicy;
-use thread_priority::{
-    RealtimeThreadSchedulePolicy, ThreadPriority, ThreadPriorityValue, ThreadSchedulePolicy,
-    set_thread_priority_and_policy, thread_native_id,
-};
-
 use crate::component::Environment;
 use crate::event_log::Event;
 use crate::executor::Executor;
+use crate::scheduling;
 use crate::world::World;
 
 /// Moves the world along with the machine's clock.
@@ -46,33 +40,16 @@ impl WorldThread {
     }
 }
 
-/// What the executor's thread does first: asks for the scheduling that the profile wants, and says
-/// so where it is refused.
+/// What the executor's thread does first, and every thread that takes over from it: asks for the
+/// scheduling that the profile wants, and says so where it is refused.
 pub(super) fn preparation(
     executor: &Executor,
     environment: Arc<Environment>,
-) -> impl FnOnce() + Send + 'static {
+) -> impl Fn() + Send + Sync + 'static {
     let (name, policy, priority) = (executor.name.clone(), executor.policy, executor.priority);
     move || {
-        set_timer_slack();
-        let real_time = match policy {
-            SchedulingPolicy::Other => return,
-            SchedulingPolicy::Fifo => RealtimeThreadSchedulePolicy::Fifo,
-            SchedulingPolicy::RoundRobin => RealtimeThreadSchedulePolicy::RoundRobin,
-        };
-        // The kernel's real-time priorities begin at 1.
-        let value = ThreadPriorityValue::try_from(priority.clamp(1, 99));
-        let refused = match value {
-            Ok(value) => set_thread_priority_and_policy(
-                thread_native_id(),
-                ThreadPriority::Crossplatform(value),
-                ThreadSchedulePolicy::Realtime(real_time),
-            )
-            .err()
-            .map(|error| format!("{error:?}")),
-            Err(reason) => Some(reason.to_owned()),
-        };
-        if let Some(reason) = refused {
+        scheduling::wake_in_time();
+        if let Err(reason) = scheduling::set(policy, priority) {
             let message = format!(
                 "executor '{name}' asked for real-time scheduling and runs without it: {reason}"
             );
@@ -80,10 +57,4 @@ pub(super) fn preparation(
             environment.events.record(now_ns, Event::Notice { message });
         }
     }
-}
-
-/// Asks for wake-ups at the time that was asked for: by default the kernel may be 50 us late to
-/// save energy. Refused nowhere that is known; a refusal would only make cycles less even.
-fn set_timer_slack() {
-    let _less_even = rustix::thread::set_current_timer_slack(NonZeroU64::new(1));
 }

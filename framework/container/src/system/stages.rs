@@ -22,15 +22,12 @@ impl System {
     /// ERROR and the rest goes on; one that says no stops the whole start.
     pub(super) fn bring_up(&mut self) -> Result<(), StartError> {
         for (name, members) in &self.applications {
-            self.environment.events.record(
-                0,
-                Event::RunStarted {
-                    application: name.clone(),
-                    clock: self.options.clock.name(),
-                    seed: self.options.seed,
-                    components: members.len(),
-                },
-            );
+            self.record(Event::RunStarted {
+                application: name.clone(),
+                clock: self.options.clock.name(),
+                seed: self.options.seed,
+                components: members.len(),
+            });
         }
         self.begin_injections();
         self.bring_up_by_steps().inspect_err(|_| {
@@ -81,7 +78,7 @@ impl System {
         let environment = &self.environment;
         if environment.injections.is_armed() {
             let world = environment.world.as_deref();
-            let begun = environment.injections.advance(Duration::ZERO, world);
+            let begun = environment.injections.advance(self.now(), world);
             environment.record_injections(&begun);
         }
     }
@@ -175,12 +172,13 @@ impl System {
                 self.lanes.push((lane, members));
             }
             ClockKind::Real => {
-                self.manager_threads
-                    .start(&self.supervisor, &self.crew, wanted)?;
-                if executors
-                    .iter()
-                    .any(|one| one.policy != SchedulingPolicy::Other)
-                {
+                let supervised = self.options.supervised.clone();
+                let real_time = executors.iter();
+                let real_time = real_time.filter(|one| one.policy != SchedulingPolicy::Other);
+                let above = real_time.map(|one| one.priority).max();
+                let threads = &mut self.manager_threads;
+                threads.start(&self.supervisor, &self.crew, wanted, above, supervised)?;
+                if above.is_some() {
                     self.lock_memory();
                 }
                 if let Some(world) = &self.world {

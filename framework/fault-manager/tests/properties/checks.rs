@@ -70,11 +70,14 @@ impl Shell {
         let last = self.facts[component].resets.last().copied();
         let fact = &mut self.facts[component];
         if matches!(act.action, Action::Replace { .. }) {
-            fact.resets.clear();
-            fact.in_vain = 0;
+            fact.replacing = true;
             fact.replacements += 1;
             return;
         }
+        assert!(
+            !fact.replacing,
+            "nothing that a reset could bring back: {act:?}"
+        );
         assert!(used < rule.retry_max, "the budget is used up: {act:?}");
         if used > 0 {
             let earliest = last.expect("there was one") + rule.backoff;
@@ -168,6 +171,7 @@ impl Shell {
         let rule = self.fault_rule(of);
         let rules = self.rules(of);
         let resets = rules.resurrect.as_ref().is_none_or(|rule| rule.value.reset);
+        let resets = resets && !self.facts[of].replacing;
         let exhausted = (!resets || self.used(of, &rule) >= rule.retry_max)
             && self.facts[of].replacements == rules.secondaries.len();
         exhausted
@@ -185,7 +189,7 @@ impl Shell {
         let fact = &self.facts[component];
         fact.in_error
             && self.manager.condition(component) == Some(Condition::Waiting)
-            && (!resets || rule.retry_max == 0)
+            && (!resets || fact.replacing || rule.retry_max == 0)
             && fact.replacements == rules.secondaries.len()
             && rule.severity == ApplicationSeverity::Global
     }
@@ -196,6 +200,7 @@ impl Shell {
             if about(self.name(component)) {
                 self.facts[component].resets.clear();
                 self.facts[component].in_vain = 0;
+                self.facts[component].replacing = false;
             }
         }
     }

@@ -26,11 +26,23 @@ pub struct Fact {
     pub open: Option<ActionId>,
     pub awaits_first_cycle: bool,
     pub down: Level,
-    /// Resets since the last replacement or clear.
+    /// Resets since the last replacement that worked, or clear.
     pub resets: Vec<Duration>,
     /// Resets since the component last worked.
     pub in_vain: u32,
     pub replacements: usize,
+    /// The last one has not worked yet.
+    pub replacing: bool,
+}
+
+impl Fact {
+    /// It works: resets of a secondary that does are counted from nothing.
+    fn works(&mut self) {
+        self.in_vain = 0;
+        if std::mem::take(&mut self.replacing) {
+            self.resets.clear();
+        }
+    }
 }
 
 /// The container.
@@ -63,6 +75,7 @@ impl Shell {
             resets: Vec::new(),
             in_vain: 0,
             replacements: 0,
+            replacing: false,
         };
         let mut shell = Self {
             facts: vec![fact; count.sum()],
@@ -182,7 +195,7 @@ impl Shell {
                 fact.in_error = false;
                 fact.awaits_first_cycle = true;
                 if !periodic {
-                    fact.in_vain = 0;
+                    fact.works();
                 }
             } else if recovers {
                 fact.in_error = true;
@@ -206,7 +219,7 @@ impl Shell {
         let fact = &mut self.facts[component];
         if fact.awaits_first_cycle && fact.down == Level::Up {
             fact.awaits_first_cycle = false;
-            fact.in_vain = 0;
+            fact.works();
             let incarnation = fact.incarnation;
             self.tell(Observation::Works {
                 component,

@@ -75,7 +75,8 @@ pub struct Secondary {
     pub preload: Preload,
 }
 
-/// How much of a secondary is prepared before it is needed.
+/// How much of an instance is prepared before it is needed: of a secondary, or, by `standby`, of the
+/// component itself for a reset of an instance that cannot be called any more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Preload {
     /// Nothing. The default, as in the paper: it costs no memory.
@@ -118,10 +119,27 @@ pub fn declared_replacement_cost(preload: Preload, tier: IsolationTier) -> Durat
 }
 
 /// `actuator`: the component moves something.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ActuatorRule {
     /// How it stops in an emergency.
     pub stop_category: StopCategory,
+    /// What its hardware is told while no container runs.
+    pub safe_states: Vec<SafeStateRule>,
+}
+
+/// A command to hardware is a frame of a serial line or two; more is no safe state but a program.
+pub const MAX_SAFE_STATE_BYTES: usize = 256;
+
+/// `safe_state` of an actuator: bytes that make its hardware safe, for hardware that does not stop by
+/// itself when commands fail to come.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SafeStateRule {
+    /// Path of the device.
+    pub device: String,
+    /// What is written to it.
+    pub bytes: Vec<u8>,
+    /// How often.
+    pub period: Duration,
 }
 
 /// The stop categories of IEC 60204-1.

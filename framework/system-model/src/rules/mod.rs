@@ -20,9 +20,9 @@ pub use diagnosis::{
 };
 pub use handling::{
     ActuatorRule, DEFAULT_FAULT_WINDOW, DEFAULT_PERSISTED_MAX_AGE, DEFAULT_RETRY_MAX, FaultRule,
-    IsolationRule, IsolationTier, MAX_RETRY_MAX, Preload, ProcessLimits, RecoveryRule,
-    ResurrectRule, SafeValue, Secondary, StopCategory, declared_replacement_cost,
-    declared_reset_cost,
+    IsolationRule, IsolationTier, MAX_RETRY_MAX, MAX_SAFE_STATE_BYTES, Preload, ProcessLimits,
+    RecoveryRule, ResurrectRule, SafeStateRule, SafeValue, Secondary, StopCategory,
+    declared_replacement_cost, declared_reset_cost,
 };
 pub use monitor::{
     DecisionRule, MonitorRule, ProcessModelRule, RulePort, VotingMethod, VotingRule, VotingSource,
@@ -83,6 +83,8 @@ pub struct ComponentRules {
     pub resurrect: Option<Located<ResurrectRule>>,
     /// Budget of recoveries, and what follows when it is used up.
     pub fault: Option<Located<FaultRule>>,
+    /// How much of another instance of the component itself is prepared; none: nothing is.
+    pub standby: Option<Located<Preload>>,
     /// What takes the component's place, in order.
     pub secondaries: Vec<Secondary>,
     /// How long a recovery may take.

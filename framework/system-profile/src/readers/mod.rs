@@ -40,7 +40,7 @@ pub const PROFILE_ROOTS: [&str; 13] = [
 
 /// Elements of the fault-tolerance dialect. They may stand inline in profiles, and are read
 /// together with the rule files, not here.
-pub(crate) const FAULT_TOLERANCE: [&str; 28] = [
+pub(crate) const FAULT_TOLERANCE: [&str; 29] = [
     "actuator",
     "adapt",
     "backup",
@@ -64,6 +64,7 @@ pub(crate) const FAULT_TOLERANCE: [&str; 28] = [
     "resurrect",
     "secondary",
     "severity",
+    "standby",
     "stuck",
     "validation",
     "validity",

@@ -5,4 +5,5 @@ mod injections;
 mod meaning;
 mod mistakes;
 mod project;
+mod safe_states;
 mod sources;

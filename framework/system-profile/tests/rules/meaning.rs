@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use system_model::fault::FaultKind;
 use system_model::rules::{
-    Arming, ComponentSeverity, DecisionRule, DependencySeverity, Entity, IsolationTier,
+    Arming, ComponentSeverity, DecisionRule, DependencySeverity, Entity, IsolationTier, Preload,
     ProcessLimits, StopCategory, VotingMethod,
 };
 
@@ -83,6 +83,14 @@ fn how_long_a_persisted_copy_is_good() {
     }
 }
 
+/// Bounds of the process in the rules below.
+const LIMITS: ProcessLimits = ProcessLimits {
+    memory_bytes: Some(2 << 20),
+    open_files: Some(32),
+    processor_time_s: None,
+    filters_system_calls: false,
+};
+
 #[test]
 fn rules_of_components() {
     let project = Project::new();
@@ -99,6 +107,7 @@ fn rules_of_components() {
             <memory limit_kb='64' severity='stop' latch='true'><confirm count='3'/></memory>
             <resurrect><reset>on</reset><backup persist='true'>40</backup></resurrect>
             <fault window='10s' backoff='5' retry_max='2'><severity>global</severity></fault>
+            <standby preload='warm'/>
             <recovery deadline='20'/><isolation group='drive' memory_limit_kb='2048' open_files='32' system_call_filter='false'>process</isolation>
             <actuator stop_category='1'><command port='command' safe_value='0'/></actuator>
             <adapt>adapt.xml</adapt><handle><reference>handle.xml</reference></handle>",
@@ -137,19 +146,14 @@ fn rules_of_components() {
         (2, Duration::from_secs(10))
     );
     assert_eq!(fault.backoff, milliseconds(5));
+    assert_eq!(motor.standby.as_ref().unwrap().value, Preload::Warm);
     let isolation = &motor.isolation.as_ref().unwrap().value;
     assert_eq!(
         (isolation.tier, isolation.group.as_deref()),
         (IsolationTier::Process, Some("drive"))
     );
-    let limits = ProcessLimits {
-        memory_bytes: Some(2 << 20),
-        open_files: Some(32),
-        processor_time_s: None,
-        filters_system_calls: false,
-    };
-    assert_eq!(isolation.limits, limits);
-    let actuator = motor.actuator.as_ref().unwrap().value;
+    assert_eq!(isolation.limits, LIMITS);
+    let actuator = &motor.actuator.as_ref().unwrap().value;
     assert_eq!(actuator.stop_category, StopCategory::ControlledThenOff);
     assert_eq!(motor.ports[0].checks.safe_values[0].value.value, 0.0);
     assert_eq!(motor.adapt.as_ref().unwrap().value, "adapt.xml");

@@ -72,6 +72,38 @@ fn two_rule_files_must_not_contradict_each_other() {
 }
 
 #[test]
+fn a_standby_is_one_that_can_take_over() {
+    let project = Project::new();
+    for (rule, expected) in [
+        ("<standby preload='loaded'/>", None),
+        ("<standby/>", Some("<standby> has no preload")),
+        (
+            "<standby preload='hot'/>",
+            Some("`hot` in attribute preload of <standby> is not understood"),
+        ),
+        (
+            "<standby preload='warm'/><resurrect><reset>false</reset></resurrect>",
+            Some("a standby of `motor`, which is never reset"),
+        ),
+        (
+            "<standby preload='warm'/><fault retry_max='0'/>",
+            Some("a standby of `motor`, which is never reset"),
+        ),
+    ] {
+        let problems = project.load(&[&of("motor", rule)]).problems;
+        let expected = expected.map(|text| format!("r0:1: {text}"));
+        assert_eq!(problems, Vec::from_iter(expected), "{rule}");
+    }
+    let standby = |preload: &str| of("motor", &format!("<standby preload='{preload}'/>"));
+    let loaded = project.load(&[&standby("warm"), &standby("loaded")]);
+    let told = loaded.problems.concat();
+    assert!(
+        told.contains("this <standby> contradicts the one at"),
+        "{told}"
+    );
+}
+
+#[test]
 fn a_rule_file_without_its_application_is_checked_alone() {
     let project = Project::new();
     let path = project.write("rules/x.xml", "<fault_rules application='patrl'/>");

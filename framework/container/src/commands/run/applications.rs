@@ -13,6 +13,17 @@ use super::{Failed, RunArguments, errors_on_terminal, exit_code, models, problem
 
 /// Loads all applications of a run.
 pub(super) fn load(arguments: &RunArguments) -> Result<Vec<Application>, Failed> {
+    let (mut applications, warnings) = read(arguments)?;
+    show(&warnings);
+    for application in &mut applications {
+        let (rules, specification) = (&application.rules, &application.specification);
+        application.models = models::load(rules, specification, &arguments.search_path)?;
+    }
+    Ok(applications)
+}
+
+/// Reads them, without their models; with warnings.
+pub(super) fn read(arguments: &RunArguments) -> Result<(Vec<Application>, Vec<Problem>), Failed> {
     let files = (arguments.applications.iter())
         .chain(&arguments.rules)
         .chain(&arguments.inject);
@@ -35,18 +46,13 @@ pub(super) fn load(arguments: &RunArguments) -> Result<Vec<Application>, Failed>
         .filter_map(|file| reading.application(file))
         .collect();
     reading.check_names(&specifications);
-    let mut applications: Vec<Application> = (specifications.iter())
+    let applications: Vec<Application> = (specifications.iter())
         .map(|specification| reading.rules_of(specification, &specifications))
         .collect();
     if !reading.sound {
         return Err(not_started(&arguments.applications, &reading.problems));
     }
-    show(&reading.problems);
-    for application in &mut applications {
-        let (rules, specification) = (&application.rules, &application.specification);
-        application.models = models::load(rules, specification, &arguments.search_path)?;
-    }
-    Ok(applications)
+    Ok((applications, reading.problems))
 }
 
 /// The world that the applications drive in, if any; a robot is in one place.

@@ -7,7 +7,7 @@ use container::assembly::AssemblyProblem;
 use container::system::StartError;
 
 /// Exit codes of `run`, by kind; the manual of the command lists them.
-pub(super) mod exit_code {
+pub(in crate::commands) mod exit_code {
     pub const ENDED: u8 = 0;
     pub const PROFILE: u8 = 1;
     pub const FILE: u8 = 2;
@@ -18,9 +18,9 @@ pub(super) mod exit_code {
 }
 
 /// Why there is nothing (more) to run: exit code and text.
-pub(super) struct Failed {
-    pub(super) code: u8,
-    pub(super) text: String,
+pub(in crate::commands) struct Failed {
+    pub(in crate::commands) code: u8,
+    pub(in crate::commands) text: String,
 }
 
 /// Applications that did not start.

@@ -1,6 +1,7 @@
 //! Events in words, for a person who watches.
 
 use container::event_log::Event;
+use container::outer_supervision::ContainerRestart;
 use fault_manager::{Cause, Evidence, Verdict};
 
 /// The event in words; `None` for those that would only be noise.
@@ -37,12 +38,13 @@ pub(super) fn describe(event: &Event) -> Option<String> {
             fault,
             component,
             change,
-        } => format!(
-            "injected fault {fault} {change}{}",
-            component
-                .as_ref()
-                .map_or_else(String::new, |name| format!(" in {name}"))
-        ),
+        } => {
+            let place = component.as_ref().map(|name| format!(" in {name}"));
+            format!(
+                "injected fault {fault} {change}{}",
+                place.unwrap_or_default()
+            )
+        }
         Event::DatumSetAside {
             component, port, ..
         } => format!(
@@ -53,10 +55,7 @@ pub(super) fn describe(event: &Event) -> Option<String> {
             sequence,
             age_ms,
             ..
-        } => {
-            let age = std::time::Duration::from_millis(*age_ms);
-            format!("{component}: goes on from checkpoint {sequence}, {age:.1?} old")
-        }
+        } => format!("{component}: goes on from checkpoint {sequence}, {age_ms} ms old"),
         Event::Overrun {
             executor, late_ns, ..
         } => {
@@ -70,10 +69,24 @@ pub(super) fn describe(event: &Event) -> Option<String> {
         } if *level != "debug" => format!("{component}: {level}: {message}"),
         Event::Log { .. } | Event::RunStopped { .. } => return None,
         Event::Notice { message } => format!("notice: {message}"),
+        Event::ContainerRestarted(restart) => restarted(restart),
+        Event::ContainerGivenUp { seen, .. } => format!("the container is given up: {seen}"),
         Event::TargetReached { time_s } => {
             format!("the robot has reached its target ({time_s:.2} s)")
         }
     })
+}
+
+/// What became of the container before this one.
+fn restarted(restart: &ContainerRestart) -> String {
+    let without = std::time::Duration::from_micros(restart.without_container_us);
+    format!(
+        "RESTART {} of the container: {}: {}; {:.3} s without one",
+        restart.restart,
+        restart.seen,
+        restart.done,
+        without.as_secs_f64()
+    )
 }
 
 /// A verdict in one line: who, what, why so, and what is being done.

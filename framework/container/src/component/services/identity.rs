@@ -77,8 +77,9 @@ impl Services {
         self.inboxes.push(inbox);
     }
 
-    pub(in crate::component) fn take_inboxes(&mut self) -> Vec<Inbox> {
-        std::mem::take(&mut self.inboxes)
+    /// Takes the queues of messages from the instance that was there before.
+    pub(in crate::component) fn take_inboxes(&mut self, predecessor: &mut Self) {
+        std::mem::swap(&mut self.inboxes, &mut predecessor.inboxes);
     }
 
     /// What belongs to the name rather than to the instance.

@@ -12,6 +12,7 @@ use super::declared::DeclaredSecondary;
 use super::detection::safe_values;
 use super::diagnosis::APPLICATION_SEVERITIES;
 use super::measure::{duration, located, positive_duration, required, setting, text};
+use super::safe_state::safe_state;
 use crate::node::Node;
 use crate::value::Value;
 
@@ -121,14 +122,25 @@ fn report_endless(node: &Node<'_>, rule: &FaultRule) {
     );
 }
 
+/// How much is prepared, by name.
+const PRELOADS: [(&str, Preload); 3] = [
+    ("cold", Preload::Cold),
+    ("loaded", Preload::Loaded),
+    ("warm", Preload::Warm),
+];
+
+/// `standby`.
+pub(super) fn standby(node: &Node<'_>) -> Option<Located<Preload>> {
+    let node = node.child("standby")?;
+    let preload = required(&node, "preload").and_then(|value| value.choice(&PRELOADS));
+    node.finish();
+    Some(located(&node, preload?))
+}
+
 fn secondary(node: &Node<'_>) -> Option<DeclaredSecondary> {
-    let preload = node.attribute("preload").map(|value| {
-        value.choice(&[
-            ("cold", Preload::Cold),
-            ("loaded", Preload::Loaded),
-            ("warm", Preload::Warm),
-        ])
-    });
+    let preload = node
+        .attribute("preload")
+        .map(|value| value.choice(&PRELOADS));
     let reference = match node.element().children.is_empty() {
         true => Some(node.text()).filter(|text| !text.is_empty()),
         false => node.value("reference"),
@@ -176,8 +188,13 @@ pub(super) fn actuator(node: &Node<'_>) -> (Option<Located<ActuatorRule>>, Vec<C
     });
     let commands = node.children("command");
     let commands = commands.iter().filter_map(command).collect();
+    let safe_states = node.children("safe_state");
+    let safe_states = safe_states.iter().filter_map(safe_state).collect();
     node.finish();
-    let rule = category.map(|stop_category| ActuatorRule { stop_category });
+    let rule = category.map(|stop_category| ActuatorRule {
+        stop_category,
+        safe_states,
+    });
     (rule.map(|rule| located(&node, rule)), commands)
 }
 

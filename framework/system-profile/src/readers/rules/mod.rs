@@ -9,6 +9,7 @@ mod handling;
 mod isolation;
 pub(super) mod measure;
 mod monitor;
+mod safe_state;
 
 use system_model::profile::Located;
 use system_model::rules::{ComponentRules, HeartbeatRule, PortChecks};
@@ -107,6 +108,7 @@ pub(crate) fn component_elements(node: &Node<'_>, name: &Located<String>) -> Dec
         ports: Vec::new(),
         resurrect: handling::resurrect(node),
         fault,
+        standby: handling::standby(node),
         secondaries: Vec::new(),
         recovery: handling::recovery(node),
         actuator,

@@ -22,11 +22,9 @@ pub(super) fn check(assembly: &Assembly<'_>, names: &Names<'_>, rules: &FaultRul
         check_backup(assembly, component, own);
         check_actuator(assembly, component, own);
         let fault = own.fault.as_ref().or(rules.fault.as_ref());
-        check_recovery(
-            assembly,
-            own,
-            fault.map(|fault| fault.value).unwrap_or_default(),
-        );
+        let fault = fault.map(|fault| fault.value).unwrap_or_default();
+        check_standby(assembly, component, own, fault);
+        check_recovery(assembly, own, fault);
     }
     for executor in &rules.executors {
         let first = names.specification(executor.first_component);
@@ -104,6 +102,31 @@ fn check_backup(
     }
 }
 
+/// A standby of the component itself takes over where it is reset and cannot be called any more.
+fn check_standby(
+    assembly: &Assembly<'_>,
+    component: &ComponentSpecification,
+    rules: &ComponentRules,
+    fault: FaultRule,
+) {
+    if let Some(standby) = rules.standby.as_ref().filter(|_| !resets(rules, fault)) {
+        assembly.report_at(
+            Severity::Error,
+            &standby.place,
+            format!(
+                "a standby of `{}`, which is never reset",
+                quoted(&component.name)
+            ),
+            "nobody would take over; allow resets (<resurrect>, <retry_max>), or remove <standby>",
+        );
+    }
+}
+
+fn resets(rules: &ComponentRules, fault: FaultRule) -> bool {
+    let may_reset = rules.resurrect.as_ref().is_none_or(|rule| rule.value.reset);
+    may_reset && fault.retry_max > 0
+}
+
 fn check_actuator(
     assembly: &Assembly<'_>,
     component: &ComponentSpecification,
@@ -152,14 +175,12 @@ fn check_recovery(assembly: &Assembly<'_>, rules: &ComponentRules, fault: FaultR
             ),
         );
     };
-    let resets =
-        rules.resurrect.as_ref().is_none_or(|rule| rule.value.reset) && fault.retry_max > 0;
     let pause = match fault.retry_max {
         0 | 1 => Duration::ZERO,
         _ => fault.backoff,
     };
     let reset = declared_reset_cost(tier).saturating_add(pause);
-    if resets && reset > deadline {
+    if resets(rules, fault) && reset > deadline {
         report("a reset", reset, None);
     }
     for secondary in &rules.secondaries {

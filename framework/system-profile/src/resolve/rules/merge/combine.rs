@@ -113,6 +113,7 @@ impl<'a> Combine<'a> {
         self.slot("memory", &mut older.memory, newer.memory);
         self.slot("resurrect", &mut older.resurrect, newer.resurrect);
         self.slot("fault", &mut older.fault, newer.fault);
+        self.slot("standby", &mut older.standby, newer.standby);
         self.slot("recovery", &mut older.recovery, newer.recovery);
         self.slot("actuator", &mut older.actuator, newer.actuator);
         self.slot("isolation", &mut older.isolation, newer.isolation);

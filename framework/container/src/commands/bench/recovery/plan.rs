@@ -1,0 +1,59 @@
+//! How the faults of all rows are spread over processes.
+
+use super::application::Batch;
+use super::scenario::{Group, Handling};
+
+/// Components under test of each row. Their faults take turns, so that each has time to get another
+/// standby while the others are hit.
+const CHAINS: u32 = 5;
+
+/// Faults of one component in one process. A secondary is used once, so this many stand in its
+/// rules; every fault may leave an instance and a copy of the library behind, 300 KB or so.
+const FAULTS: u32 = 50;
+
+/// Emergency stops in one process.
+const STOPS: u32 = 500;
+
+/// Processes that together measure `n` faults of each row of a group.
+pub(super) fn batches(group: &Group, n: u32) -> Vec<Batch> {
+    let stops = group.handlings.contains(&Handling::EmergencyStop);
+    let (chains, most) = match stops {
+        true => (1, STOPS),
+        false => (CHAINS, FAULTS),
+    };
+    let mut left = n;
+    let mut batches = Vec::new();
+    while left > 0 {
+        let faults = left.div_ceil(chains).min(most);
+        // The first of a component's emergencies may be a reset that is within its budget.
+        let in_vain = u32::from(stops);
+        batches.push(Batch {
+            group: group.clone(),
+            chains,
+            faults: faults + in_vain,
+        });
+        left = left.saturating_sub(faults * chains);
+    }
+    batches
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::commands::bench::recovery::scenario::{Fault, groups};
+
+    #[test]
+    fn every_row_gets_its_faults_and_no_process_too_many() {
+        for group in groups(true) {
+            for n in [1, 19, 20, 200, 201, 1000, 5000] {
+                let batches = batches(&group, n);
+                let faults: u32 = batches.iter().map(|it| it.chains * it.faults).sum();
+                assert!(faults >= n, "{group:?}, {n}: {faults}");
+                assert!(faults <= n + CHAINS + 10, "{group:?}, {n}: {faults}");
+                let most = |it: &Batch| it.faults <= FAULTS.max(STOPS + 1);
+                assert!(batches.iter().all(most), "{group:?}, {n}");
+            }
+        }
+        assert!(groups(true).iter().any(|it| it.fault == Fault::Hang));
+    }
+}

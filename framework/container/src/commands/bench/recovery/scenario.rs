@@ -1,0 +1,175 @@
+//! What is measured: each kind of fault with each way of handling it.
+
+use serde::{Deserialize, Serialize};
+
+/// Where the component runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Tier {
+    /// In the container, behind the guard.
+    Guarded,
+}
+
+/// What goes wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Fault {
+    /// A null pointer.
+    Trap,
+    /// A panic.
+    Panic,
+    /// A callback that does not return; counted from its deadline.
+    Hang,
+    /// A callback that returns a failure.
+    ErrorReturn,
+    /// A datum out of its range; counted from when it is written.
+    OutOfRange,
+}
+
+/// What is done about it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Handling {
+    /// Reset, without its memory.
+    Reset,
+    /// Reset, with 4 KiB restored from the checkpoint.
+    ResetCheckpoint,
+    /// As before, by a warm standby of the component itself.
+    StandbyWarm,
+    /// A secondary takes its place, of which nothing was prepared; with the checkpoint.
+    SecondaryCold,
+    /// The same, its library loaded and the instance created.
+    SecondaryLoaded,
+    /// The same, initialised.
+    SecondaryWarm,
+    /// Emergency stop, until the actuator has worked on its safe command.
+    EmergencyStop,
+}
+
+impl Tier {
+    /// The word of the rules and of the report.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Guarded => "guarded",
+        }
+    }
+}
+
+impl Fault {
+    /// All of them, in the order of the report.
+    const ALL: [Self; 5] = [
+        Self::Trap,
+        Self::Panic,
+        Self::Hang,
+        Self::ErrorReturn,
+        Self::OutOfRange,
+    ];
+
+    /// The word of the report.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Trap => "trap",
+            Self::Panic => "panic",
+            Self::Hang => "hang",
+            Self::ErrorReturn => "error_return",
+            Self::OutOfRange => "out_of_range",
+        }
+    }
+
+    /// Whether the instance can still be called: then a reset is done in place, and no standby of
+    /// its own is asked for.
+    fn leaves_instance(self) -> bool {
+        matches!(self, Self::ErrorReturn | Self::OutOfRange)
+    }
+}
+
+impl Handling {
+    /// All that bring the component back.
+    const RECOVERIES: [Self; 6] = [
+        Self::Reset,
+        Self::ResetCheckpoint,
+        Self::StandbyWarm,
+        Self::SecondaryCold,
+        Self::SecondaryLoaded,
+        Self::SecondaryWarm,
+    ];
+
+    /// The word of the report.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Reset => "reset",
+            Self::ResetCheckpoint => "reset_checkpoint",
+            Self::StandbyWarm => "standby_warm",
+            Self::SecondaryCold => "secondary_cold",
+            Self::SecondaryLoaded => "secondary_loaded",
+            Self::SecondaryWarm => "secondary_warm",
+            Self::EmergencyStop => "emergency_stop",
+        }
+    }
+
+    /// Cycles, which are milliseconds, from a fault that is handled so to the next one, of another
+    /// component. Handling takes a tenth of one; what is left is other work that disturbs the caches,
+    /// and time for another standby. A library that is loaded on the way takes most of one more, and
+    /// an emergency stop is looked at before it is cleared.
+    pub(super) fn cycles(self) -> u64 {
+        match self {
+            Self::SecondaryCold | Self::EmergencyStop => 3,
+            _ => 2,
+        }
+    }
+
+    /// Grade of the secondaries, where these handle the fault.
+    pub(super) fn secondary_preload(self) -> Option<&'static str> {
+        match self {
+            Self::SecondaryCold => Some("cold"),
+            Self::SecondaryLoaded => Some("loaded"),
+            Self::SecondaryWarm => Some("warm"),
+            _ => None,
+        }
+    }
+}
+
+/// Rows that are measured in one application, side by side: they have the fault in common, which
+/// hits one component at a time.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Group {
+    /// Where the components run.
+    pub(super) tier: Tier,
+    /// What happens to them.
+    pub(super) fault: Fault,
+    /// One row each.
+    pub(super) handlings: Vec<Handling>,
+}
+
+/// The rows; `all` of them, or without those that differ from another one in nothing but detection:
+/// what it takes to put a secondary in the place of an instance depends on how far it was prepared,
+/// and on whether the old one is dead (trap) or has to be given up (error return).
+///
+/// An emergency stop stops everything, so it has an application of its own; how it comes about does
+/// not matter to it, so it is measured for a component that dies and for bad data.
+pub(super) fn groups(all: bool) -> Vec<Group> {
+    let tier = Tier::Guarded;
+    let recoveries = |fault: Fault| {
+        let is_wanted = |it: &Handling| match it {
+            Handling::StandbyWarm => !fault.leaves_instance(),
+            Handling::SecondaryCold | Handling::SecondaryLoaded => {
+                all || matches!(fault, Fault::Trap | Fault::ErrorReturn)
+            }
+            _ => true,
+        };
+        let handlings = Handling::RECOVERIES.into_iter();
+        Group {
+            tier,
+            fault,
+            handlings: handlings.filter(is_wanted).collect(),
+        }
+    };
+    let stop = |fault| Group {
+        tier,
+        fault,
+        handlings: vec![Handling::EmergencyStop],
+    };
+    let mut groups: Vec<Group> = Fault::ALL.into_iter().map(recoveries).collect();
+    groups.extend([Fault::Trap, Fault::OutOfRange].map(stop));
+    groups
+}

@@ -1,0 +1,78 @@
+//! The reference robot under a parent: its world outlives the container.
+
+use std::path::PathBuf;
+
+use rustix::process::Signal;
+use tests::{Application, Supervised, Watched, repository, take_turn, until};
+
+use super::{LIMIT, PATIENT};
+
+fn start(application: &Application, arguments: &[&str]) -> Watched {
+    let profile = repository().join("profiles/applications/target_following.xml");
+    // A seed whose target is near, so that the test takes half a minute.
+    let supervised = ["--supervised", "--supervision-timeout", PATIENT];
+    let seed = ["--seed", "17", "--for", "110s"];
+    let all = [&supervised[..], &seed, arguments].concat();
+    application.start_files(&[profile], &all)
+}
+
+/// Waits until the robot has been driven for a while by a container.
+fn wait_until_driving(application: &Application) {
+    let operator = application.operator();
+    operator.socket();
+    let cycles = || operator.status()["components"]["path_planner"]["cycles"].as_u64();
+    assert!(until(LIMIT, || cycles() > Some(75)), "it does not drive");
+}
+
+fn picture(application: &Application) -> PathBuf {
+    application.folder().join("drive.svg")
+}
+
+#[test]
+fn it_reaches_its_target_although_its_container_was_killed() {
+    let _turn = take_turn();
+    let application = Application::new();
+    let path = picture(&application);
+    let run = start(&application, &["--picture", &path.display().to_string()]);
+    wait_until_driving(&application);
+    let processes = Supervised::by(&run);
+    let (container, world) = (processes.container(None), processes.world());
+    Supervised::signal(container, Signal::KILL);
+    let outcome = application.outcome(run.wait(2 * LIMIT)).ended_well();
+    let summary = outcome.summary();
+    assert_eq!(summary["restarts"], 1, "{summary}");
+    let robot = &summary["robot"];
+    assert_eq!(robot["reached"], true, "{robot}");
+    assert_eq!(robot["collisions"], 0, "{robot}");
+    let drive = std::fs::read_to_string(path).expect("a picture");
+    assert!(drive.contains("<svg"));
+    Supervised::assert_ends(world);
+}
+
+#[test]
+fn nothing_is_left_of_a_parent_that_was_killed() {
+    let _turn = take_turn();
+    let application = Application::new();
+    let run = start(&application, &[]);
+    let processes = Supervised::by(&run);
+    let (container, world) = (processes.container(None), processes.world());
+    wait_until_driving(&application);
+    run.signal(Signal::KILL);
+    Supervised::assert_ends(container);
+    Supervised::assert_ends(world);
+}
+
+#[test]
+fn a_world_that_dies_ends_the_run() {
+    let _turn = take_turn();
+    let application = Application::new();
+    let run = start(&application, &[]);
+    let processes = Supervised::by(&run);
+    let (container, world) = (processes.container(None), processes.world());
+    wait_until_driving(&application);
+    Supervised::signal(world, Signal::KILL);
+    let finished = run.wait(LIMIT);
+    assert_eq!(finished.code, Some(6), "{finished}");
+    assert!(finished.stderr.contains("simulated world"), "{finished}");
+    Supervised::assert_ends(container);
+}
