@@ -216,13 +216,17 @@ impl Application {
     /// # Panics
     /// If it never holds.
     pub fn wait_until(&self, enough: impl Fn(&str) -> bool) {
-        let events = self.folder().join(EVENTS);
         let mut text = String::new();
         let happened = until(RUN_LIMIT, || {
-            text = std::fs::read_to_string(&events).unwrap_or_default();
+            text = self.events_so_far();
             enough(&text)
         });
         assert!(happened, "what was waited for did not happen: {text}");
+    }
+
+    /// The event file of the run that is under way.
+    pub fn events_so_far(&self) -> String {
+        std::fs::read_to_string(self.folder().join(EVENTS)).unwrap_or_default()
     }
 
     /// Runs these files in one container.

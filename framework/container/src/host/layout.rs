@@ -124,14 +124,16 @@ impl Layout {
     }
 }
 
-/// Sizes of all that can be the content of one message of a port.
+/// Sizes of all that can be the content of one message of a port; data have places of their own.
 fn contents(port: &PortDescription) -> Vec<usize> {
     let methods = port.methods.iter();
     let of_methods = methods.flat_map(|method| [&method.request, &method.reply]);
     let mut sizes: Vec<usize> = of_methods
         .map(|data_type| size_of_type(data_type.as_ref()))
         .collect();
-    sizes.push(size_of_type(port.data_type.as_ref()));
+    if port.kind != PortKind::Data {
+        sizes.push(size_of_type(port.data_type.as_ref()));
+    }
     sizes
 }
 
