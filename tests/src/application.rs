@@ -293,11 +293,6 @@ impl Application {
         command
     }
 
-    /// The event file as it is now.
-    pub fn events_so_far(&self) -> String {
-        std::fs::read_to_string(self.folder().join(EVENTS)).unwrap_or_default()
-    }
-
     /// An operator beside the run.
     pub fn operator(&self) -> Operator {
         Operator::new(self.folder())
