@@ -4,6 +4,8 @@
 mod applications;
 #[path = "properties/checks.rs"]
 mod checks;
+#[path = "properties/fact.rs"]
+mod fact;
 #[path = "properties/generators.rs"]
 mod generators;
 #[path = "properties/nonsense.rs"]

@@ -7,8 +7,9 @@ use fault_manager::{
 use system_model::rules::{ApplicationSeverity, ComponentRules, FaultRule};
 use system_model::specification::ExecutionKind;
 
+use crate::fact::Fact;
 use crate::oracle::{self, Level};
-use crate::shell::{Fact, Shell};
+use crate::shell::Shell;
 
 impl Shell {
     pub fn keep(&mut self, verdict: &Verdict) {

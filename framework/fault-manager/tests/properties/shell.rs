@@ -5,45 +5,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
 use fault_manager::{
-    Action, ActionId, ActionOutcome, DetectorKind, Effect, Evidence, FaultId, FaultManager,
-    Observation, PlannedAction, Scope, Symptom, Verdict,
+    Action, ActionOutcome, DetectorKind, Effect, Evidence, FaultId, FaultManager, Observation,
+    PlannedAction, Scope, Symptom, Verdict,
 };
 use system_model::fault::FaultKind;
 use system_model::rules::ComponentSeverity;
 
+use crate::fact::Fact;
 use crate::generators::{Answer, Step};
 use crate::oracle::Level;
 
 /// More ticks than any ladder of a test has rungs: what wants more turns in a circle.
 const MOST_TICKS: usize = 2_000;
-
-/// What has become of one component in fact.
-#[derive(Debug, Clone)]
-pub struct Fact {
-    pub incarnation: u32,
-    pub in_error: bool,
-    /// The action that has been asked for and has not ended.
-    pub open: Option<ActionId>,
-    pub awaits_first_cycle: bool,
-    pub down: Level,
-    /// Resets since the last replacement that worked, or clear.
-    pub resets: Vec<Duration>,
-    /// Resets since the component last worked.
-    pub in_vain: u32,
-    pub replacements: usize,
-    /// The last one has not worked yet.
-    pub replacing: bool,
-}
-
-impl Fact {
-    /// It works: resets of a secondary that does are counted from nothing.
-    fn works(&mut self) {
-        self.in_vain = 0;
-        if std::mem::take(&mut self.replacing) {
-            self.resets.clear();
-        }
-    }
-}
 
 /// The container.
 pub struct Shell {

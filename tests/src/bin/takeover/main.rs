@@ -54,8 +54,9 @@ impl Plan {
 
 fn main() {
     let plan = Plan::from_arguments();
-    let floor = floor::measure(&plan);
+    // First, so that the first fault of the application is the first one of the process.
     let outcome = application::run(&plan);
+    let floor = floor::measure(&plan);
     let takeovers = outcome.takeovers.iter().map(|(note, all)| {
         let times: Vec<u64> = all.iter().map(|one| one.took_ns).collect();
         let mut allocations: Vec<usize> = all.iter().map(|one| one.allocations).collect();
