@@ -10,7 +10,7 @@ use container::assembly::LibraryOptions;
 use container::event_log::Event;
 use container::library::LibrarySearch;
 use container::status::ComponentStatus;
-use container::system::{Application, ClockKind, RunOptions, System};
+use container::system::{Application, ClockKind, RunOptions, StateOptions, System};
 use crossbeam::channel::{Receiver, bounded};
 use system_profile::{LoadOptions, load_application, load_injections, load_rules};
 use tests::until;
@@ -61,8 +61,10 @@ pub fn run(plan: &Plan) -> Outcome {
         echo: Some(echo),
         libraries: LibraryOptions {
             search: LibrarySearch::new(vec![plan.libraries.clone()]),
-            probe: None,
+            executable: None,
         },
+        state: StateOptions::default(),
+        supervised: None,
     };
     let system = System::start(vec![application], None, options).expect("it starts");
     allocations::look_at(thread_named("source"));
