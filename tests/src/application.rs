@@ -224,6 +224,11 @@ impl Application {
         assert!(happened, "what was waited for did not happen: {text}");
     }
 
+    /// The event file of the run that is under way.
+    pub fn events_so_far(&self) -> String {
+        std::fs::read_to_string(self.folder().join(EVENTS)).unwrap_or_default()
+    }
+
     /// Runs these files in one container.
     pub fn run_together(&self, files: &[PathBuf], arguments: &[&str]) -> Outcome {
         let finished = self.start_files(files, arguments).wait(RUN_LIMIT);

@@ -28,12 +28,24 @@ fn picture(application: &Application) -> PathBuf {
     application.folder().join("drive.svg")
 }
 
+/// What the planner knows outlives the container.
+const PERSISTED: &str = "<fault_rules application='target_following'>\
+    <component name='path_planner'>\
+    <resurrect><reset>true</reset><backup persist='true'>80</backup></resurrect>\
+    </component></fault_rules>";
+
 #[test]
 fn it_reaches_its_target_although_its_container_was_killed() {
     let _turn = take_turn();
     let application = Application::new();
     let path = picture(&application);
-    let run = start(&application, &["--picture", &path.display().to_string()]);
+    let rules = application.write("persisted.xml", PERSISTED);
+    let arguments = ["--picture", "--rules"].into_iter().zip([&path, &rules]);
+    let arguments =
+        arguments.flat_map(|(option, file)| [option.to_owned(), file.display().to_string()]);
+    let arguments: Vec<String> = arguments.collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let run = start(&application, &arguments);
     wait_until_driving(&application);
     let processes = Supervised::by(&run);
     let (container, world) = (processes.container(None), processes.world());
@@ -44,6 +56,9 @@ fn it_reaches_its_target_although_its_container_was_killed() {
     let robot = &summary["robot"];
     assert_eq!(robot["reached"], true, "{robot}");
     assert_eq!(robot["collisions"], 0, "{robot}");
+    let restored = outcome.events("checkpoint_restored", "path_planner");
+    assert_eq!(restored.len(), 1, "its checkpointed state came back");
+    assert_eq!(restored[0]["incarnation"], 2, "{}", restored[0]);
     let drive = std::fs::read_to_string(path).expect("a picture");
     assert!(drive.contains("<svg"));
     Supervised::assert_ends(world);
