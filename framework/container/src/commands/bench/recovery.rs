@@ -11,6 +11,7 @@ mod batch;
 mod children;
 mod evaluation;
 mod floor;
+mod killer;
 mod picture;
 mod plan;
 mod progress;
@@ -35,7 +36,7 @@ use children::{measure_batch, measure_floor};
 use plan::batches;
 use progress::Progress;
 use results::{FloorRow, LoadRow, RecoveryRow, Results};
-use scenario::{Group, groups};
+use scenario::{Group, Tier, groups};
 
 pub use batch::{BatchArguments, run as run_batch};
 pub use floor::{FloorArguments, run as run_floor, run_partner};
@@ -55,11 +56,18 @@ pub struct RecoveryArguments {
     /// Faults of each row
     #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=5_000))]
     n: u32,
+    /// Faults of each row of the tier `process`
+    #[arg(
+        long,
+        default_value_t = 200,
+        value_parser = clap::value_parser!(u32).range(1..=5_000)
+    )]
+    process_n: u32,
     /// Also the rows that differ from another one in nothing but detection
     #[arg(long)]
     all: bool,
     /// A first impression within seconds: few faults, one load
-    #[arg(long, conflicts_with_all = ["n", "load"])]
+    #[arg(long, conflicts_with_all = ["n", "process_n", "load"])]
     quick: bool,
     /// Draw the result to this file (SVG)
     #[arg(long, value_name = "FILE")]
@@ -106,9 +114,13 @@ pub fn run(arguments: &RecoveryArguments) -> ExitCode {
 }
 
 fn measure(arguments: &RecoveryArguments) -> io::Result<Results> {
-    let (loads, n) = match arguments.quick {
-        true => (vec![QUICK_LOAD_PERCENT], QUICK_N),
-        false => (arguments.load.clone(), arguments.n),
+    let (loads, n, process_n) = match arguments.quick {
+        true => (vec![QUICK_LOAD_PERCENT], QUICK_N, QUICK_N),
+        false => (arguments.load.clone(), arguments.n, arguments.process_n),
+    };
+    let n_of = |group: &Group| match group.tier {
+        Tier::Guarded => n,
+        Tier::Process => process_n,
     };
     let machine = Machine::here();
     if !machine.real_time {
@@ -120,7 +132,7 @@ fn measure(arguments: &RecoveryArguments) -> io::Result<Results> {
     }
     let work: Vec<(Group, Vec<Batch>)> = groups(arguments.all)
         .into_iter()
-        .map(|group| (group.clone(), batches(&group, n)))
+        .map(|group| (group.clone(), batches(&group, n_of(&group))))
         .collect();
     let per_load: usize = work.iter().map(|(_, batches)| batches.len()).sum();
     let progress = Progress::new(loads.len() * (per_load + 1));
@@ -135,7 +147,8 @@ fn measure(arguments: &RecoveryArguments) -> io::Result<Results> {
         for (group, batches) in &work {
             let mut measured = Vec::new();
             for batch in batches {
-                progress.show(&format!("load {load_percent} %: {}", group.fault.name()));
+                let (tier, fault) = (group.tier.name(), group.fault.name());
+                progress.show(&format!("load {load_percent} %: {tier}, {fault}"));
                 match measure_batch(&arguments.library_path, batch) {
                     Ok(rows) => measured.extend(rows),
                     Err(error) => results.failures.push(error.to_string()),

@@ -12,7 +12,7 @@ use super::times::Times;
 use super::trial::{self, Pace, Start};
 
 /// The isolation tiers that are measured, by the words of the rules.
-pub(super) const TIERS: [&str; 1] = ["guarded"];
+pub(super) const TIERS: [&str; 2] = ["guarded", "process"];
 
 /// Period of components that have a thread each, in ms: their work is not what is looked at.
 const ALONE_PERIOD_MS: u32 = 100;

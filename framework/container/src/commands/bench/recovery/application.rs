@@ -17,6 +17,11 @@ pub(super) const PERIOD_MS: u64 = 1;
 /// How long a callback may take: a period.
 pub(super) const CALLBACK_DEADLINE_MS: u64 = 1;
 
+/// A callback in which its host is to be killed, in milliseconds: much longer than it takes until
+/// then; and how long it may take, so that nobody else ends it.
+const KILLED_CALLBACK_MS: u64 = 20;
+const KILLED_DEADLINE_MS: u64 = 100;
+
 /// Cycles before the first fault: all threads have started, first checkpoints have been taken.
 const QUIET_CYCLES: u64 = 50;
 
@@ -59,14 +64,14 @@ impl Batch {
             let declaration = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
             std::fs::write(folder.join(name), format!("{declaration}{text}"))
         };
-        write("source.xml", profile("source", PRIORITY + 10))?;
-        write("relay.xml", profile("relay", PRIORITY))?;
+        write("source.xml", profile("source"))?;
+        write("relay.xml", profile("relay"))?;
         for number in 0..self.faults {
             // Each of its own name: a secondary that has failed is not tried again.
             let name = secondary_name(number);
-            write(&format!("{name}.xml"), profile(&name, PRIORITY))?;
+            write(&format!("{name}.xml"), profile(&name))?;
         }
-        write("sink.xml", profile("sink", PRIORITY - 10))?;
+        write("sink.xml", profile("sink"))?;
         write(APPLICATION, self.application())?;
         write(RULES, self.rules())?;
         write(INJECTIONS, self.injections())
@@ -106,6 +111,10 @@ impl Batch {
 
     fn rules_of(&self, relay: &str, handling: Handling) -> String {
         let tier = self.group.tier.name();
+        let deadline_ms = match self.group.fault {
+            Fault::HostKilled => KILLED_DEADLINE_MS,
+            _ => CALLBACK_DEADLINE_MS,
+        };
         let stops_at_once =
             handling == Handling::EmergencyStop && self.group.fault == Fault::OutOfRange;
         let severity = if stops_at_once { "emergency" } else { "reset" };
@@ -138,7 +147,7 @@ impl Batch {
         };
         format!(
             "<component name=\"{relay}\"><isolation>{tier}</isolation>\n\
-             <watchdog deadline=\"{CALLBACK_DEADLINE_MS}\"/>\n\
+             <watchdog deadline=\"{deadline_ms}\"/>\n\
              <port name=\"output\"><validity field=\"value\"><min>0</min><max>999</max></validity></port>\n\
              <severity>{severity}</severity>\n\
              <resurrect><reset>true</reset>{backup}</resurrect>{standby}\n{ladder}</component>\n"
@@ -147,9 +156,11 @@ impl Batch {
 
     /// Faults come one after the other, component by component, round and round.
     fn injections(&self) -> String {
-        let every: u64 = self.relays().map(|(_, it)| it.cycles()).sum();
+        let every: u64 = self.relays().map(|(_, it)| self.group.cycles(it)).sum();
         let repeat = self.faults;
+        let killed = format!("fault=\"slow\" duration=\"{KILLED_CALLBACK_MS}ms\"");
         let what = match self.group.fault {
+            Fault::HostKilled => &killed,
             Fault::Trap => "fault=\"segfault\"",
             Fault::Panic => "fault=\"panic\"",
             Fault::Hang => "fault=\"hang\"",
@@ -168,7 +179,7 @@ impl Batch {
                 "<inject at_cycle=\"{first}\" every_cycles=\"{every}\" repeat=\"{repeat}\" \
                  component=\"{relay}\" {what}/>"
             );
-            first += handling.cycles();
+            first += self.group.cycles(handling);
         }
         format!("<fault_injections application=\"recovery\">\n{injections}</fault_injections>\n")
     }
@@ -188,13 +199,15 @@ fn secondary_name(number: u32) -> String {
     format!("secondary_{number}")
 }
 
-fn profile(name: &str, priority: u8) -> String {
+/// All alike, so that all run on one thread, in document order: a sink takes each datum in the cycle
+/// that made it, and what a dead relay had sent is never still under way, to be voided with it.
+fn profile(name: &str) -> String {
     let is_source = name == "source";
     format!(
         "<component_profile><name>{name}</name><version>0.1.0</version>\n\
          <execution_environment><library_name>librelay.so</library_name></execution_environment>\n\
          <execution_semantics><type>periodic-shared</type><period>{PERIOD_MS}</period>\
-         <priority>{priority}</priority><policy>SCHED_FIFO</policy></execution_semantics>\n\
+         <priority>{PRIORITY}</priority><policy>SCHED_FIFO</policy></execution_semantics>\n\
          <properties><property name=\"source\" type=\"boolean\">{is_source}</property></properties>\n\
          <ports><data_port><name>input</name><usage>input</usage><data_type>Parcel</data_type>\
          <queueing_policy>FIFO</queueing_policy><queue_size>64</queue_size></data_port>\n\

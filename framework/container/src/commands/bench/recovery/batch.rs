@@ -4,6 +4,7 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use clap::Args;
@@ -15,10 +16,11 @@ use system_profile::{LoadOptions, Problem, load_application, load_injections, lo
 
 use super::application::{APPLICATION, Batch, INJECTIONS, RULES, relay_name};
 use super::evaluation::{Row, evaluate};
+use super::killer::kill_in_turn;
 use super::real_time::{ask_for_real_time, lock_memory};
 use super::record::Record;
 use super::scenario::{Fault, Handling};
-use super::witness::watch;
+use super::witness::{Seen, watch};
 use crate::commands::bench::offspring::{end_with_parent, end_within};
 use crate::commands::problems;
 use crate::commands::run::library_folders;
@@ -85,14 +87,32 @@ fn measure(arguments: &BatchArguments) -> io::Result<Vec<Row>> {
         .relays()
         .map(|(number, _)| relay_name(number))
         .collect();
-    let (recoveries, stops) = expected(&batch);
-    let seen = watch(&system, &names, recoveries, stops);
+    let seen = observe(&system, &names, &batch);
     let (_summary, log_error) = system.stop("measured");
     if let Some(error) = log_error {
         return Err(error);
     }
     let record = Record::read(&std::fs::read_to_string(events)?)?;
     Ok(evaluate(&batch, &seen, &record))
+}
+
+/// Watches all faults of a batch, and makes those that come from outside.
+fn observe(system: &System, names: &[String], batch: &Batch) -> Vec<Seen> {
+    let (recoveries, stops) = expected(batch);
+    if batch.group.fault != Fault::HostKilled {
+        return watch(system, names, recoveries, stops);
+    }
+    let done = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        let killer = scope.spawn(|| kill_in_turn(system, names, &done));
+        let mut seen = watch(system, names, recoveries, stops);
+        done.store(true, Ordering::Release);
+        let killed_ns = killer.join().unwrap_or_default();
+        for (seen, killed_ns) in seen.iter_mut().zip(killed_ns) {
+            seen.misbehaved_ns = killed_ns;
+        }
+        seen
+    })
 }
 
 /// How often each component recovers, and how many emergency stops there are in all.

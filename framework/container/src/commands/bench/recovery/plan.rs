@@ -1,7 +1,7 @@
 //! How the faults of all rows are spread over processes.
 
 use super::application::Batch;
-use super::scenario::{Group, Handling};
+use super::scenario::{Group, Handling, Tier};
 
 /// Components under test of each row. Their faults take turns, so that each has time to get another
 /// standby while the others are hit.
@@ -11,15 +11,21 @@ const CHAINS: u32 = 5;
 /// rules; every fault may leave an instance and a copy of the library behind, 300 KB or so.
 const FAULTS: u32 = 50;
 
+/// The same in the tier `process`: each of them takes a wake of its host in every cycle, and a fault
+/// leaves nothing behind.
+const PROCESS_CHAINS: u32 = 2;
+const PROCESS_FAULTS: u32 = 100;
+
 /// Emergency stops in one process.
 const STOPS: u32 = 500;
 
 /// Processes that together measure `n` faults of each row of a group.
 pub(super) fn batches(group: &Group, n: u32) -> Vec<Batch> {
     let stops = group.handlings.contains(&Handling::EmergencyStop);
-    let (chains, most) = match stops {
-        true => (1, STOPS),
-        false => (CHAINS, FAULTS),
+    let (chains, most) = match group.tier {
+        _ if stops => (1, STOPS),
+        Tier::Guarded => (CHAINS, FAULTS),
+        Tier::Process => (PROCESS_CHAINS, PROCESS_FAULTS),
     };
     let mut left = n;
     let mut batches = Vec::new();
@@ -50,7 +56,7 @@ mod tests {
                 let faults: u32 = batches.iter().map(|it| it.chains * it.faults).sum();
                 assert!(faults >= n, "{group:?}, {n}: {faults}");
                 assert!(faults <= n + CHAINS + 10, "{group:?}, {n}: {faults}");
-                let most = |it: &Batch| it.faults <= FAULTS.max(STOPS + 1);
+                let most = |it: &Batch| it.faults <= PROCESS_FAULTS.max(STOPS + 1);
                 assert!(batches.iter().all(most), "{group:?}, {n}");
             }
         }

@@ -89,6 +89,7 @@ fn write_remarks(output: &mut impl Write, results: &Results) -> io::Result<()> {
     )?;
     for row in &results.rows {
         let RecoveryRow {
+            tier,
             fault,
             handling,
             load_percent,
@@ -97,7 +98,7 @@ fn write_remarks(output: &mut impl Write, results: &Results) -> io::Result<()> {
         if row.total_us.p999 > PAPER_US {
             writeln!(
                 output,
-                "over 20 ms at p99.9: {fault}, {handling}, load {load_percent} %: {}",
+                "over 20 ms at p99.9: {tier}, {fault}, {handling}, load {load_percent} %: {}",
                 reason(results, row)
             )?;
         }
@@ -107,7 +108,7 @@ fn write_remarks(output: &mut impl Write, results: &Results) -> io::Result<()> {
             let notes: Vec<String> = notes.collect();
             writeln!(
                 output,
-                "not the same every time: {fault}, {handling}, load {load_percent} %: {}",
+                "not the same every time: {tier}, {fault}, {handling}, load {load_percent} %: {}",
                 notes.join("; ")
             )?;
         }

@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 pub(super) enum Tier {
     /// In the container, behind the guard.
     Guarded,
+    /// In a host process of its own.
+    Process,
 }
 
 /// What goes wrong.
@@ -24,6 +26,8 @@ pub(super) enum Fault {
     ErrorReturn,
     /// A datum out of its range; counted from when it is written.
     OutOfRange,
+    /// Its host process is killed by another one while a callback runs; counted from just before.
+    HostKilled,
 }
 
 /// What is done about it.
@@ -51,18 +55,20 @@ impl Tier {
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Guarded => "guarded",
+            Self::Process => "process",
         }
     }
 }
 
 impl Fault {
     /// All of them, in the order of the report.
-    const ALL: [Self; 5] = [
+    const ALL: [Self; 6] = [
         Self::Trap,
         Self::Panic,
         Self::Hang,
         Self::ErrorReturn,
         Self::OutOfRange,
+        Self::HostKilled,
     ];
 
     /// The word of the report.
@@ -73,6 +79,7 @@ impl Fault {
             Self::Hang => "hang",
             Self::ErrorReturn => "error_return",
             Self::OutOfRange => "out_of_range",
+            Self::HostKilled => "host_killed",
         }
     }
 
@@ -107,17 +114,6 @@ impl Handling {
         }
     }
 
-    /// Cycles, which are milliseconds, from a fault that is handled so to the next one, of another
-    /// component. Handling takes a tenth of one; what is left is other work that disturbs the caches,
-    /// and time for another standby. A library that is loaded on the way takes most of one more, and
-    /// an emergency stop is looked at before it is cleared.
-    pub(super) fn cycles(self) -> u64 {
-        match self {
-            Self::SecondaryCold | Self::EmergencyStop => 3,
-            _ => 2,
-        }
-    }
-
     /// Grade of the secondaries, where these handle the fault.
     pub(super) fn secondary_preload(self) -> Option<&'static str> {
         match self {
@@ -141,35 +137,60 @@ pub(super) struct Group {
     pub(super) handlings: Vec<Handling>,
 }
 
+impl Group {
+    /// Cycles, which are milliseconds, from a fault that is handled so to the next one, of another
+    /// component. Handling takes a tenth of one; what is left is other work that disturbs the caches,
+    /// and time for another standby. A library that is loaded on the way takes most of one more, and
+    /// an emergency stop is looked at before it is cleared. A host takes several to be started, by
+    /// whoever has no other work.
+    pub(super) fn cycles(&self, handling: Handling) -> u64 {
+        let in_place = self.fault.leaves_instance() && handling.secondary_preload().is_none();
+        match (self.tier, handling) {
+            (Tier::Process, _) if !in_place => 5,
+            (_, Handling::SecondaryCold | Handling::EmergencyStop) => 3,
+            _ => 2,
+        }
+    }
+}
+
 /// The rows; `all` of them, or without those that differ from another one in nothing but detection:
 /// what it takes to put a secondary in the place of an instance depends on how far it was prepared,
-/// and on whether the old one is dead (trap) or has to be given up (error return).
+/// and on whether the old one is dead (trap, host killed) or has to be given up (error return; as
+/// for a host, that is the same).
 ///
 /// An emergency stop stops everything, so it has an application of its own; how it comes about does
-/// not matter to it, so it is measured for a component that dies and for bad data.
+/// not matter to it, nor does the tier, so it is measured for a component that dies and for bad data.
 pub(super) fn groups(all: bool) -> Vec<Group> {
-    let tier = Tier::Guarded;
-    let recoveries = |fault: Fault| {
-        let is_wanted = |it: &Handling| match it {
-            Handling::StandbyWarm => !fault.leaves_instance(),
-            Handling::SecondaryCold | Handling::SecondaryLoaded => {
-                all || matches!(fault, Fault::Trap | Fault::ErrorReturn)
-            }
-            _ => true,
-        };
-        let handlings = Handling::RECOVERIES.into_iter();
-        Group {
-            tier,
-            fault,
-            handlings: handlings.filter(is_wanted).collect(),
-        }
-    };
     let stop = |fault| Group {
-        tier,
+        tier: Tier::Guarded,
         fault,
         handlings: vec![Handling::EmergencyStop],
     };
-    let mut groups: Vec<Group> = Fault::ALL.into_iter().map(recoveries).collect();
+    let of_tier = |tier| {
+        let faults = Fault::ALL.into_iter();
+        let possible = faults.filter(move |it| tier == Tier::Process || *it != Fault::HostKilled);
+        possible.map(move |fault| recoveries(tier, fault, all))
+    };
+    let mut groups: Vec<Group> = of_tier(Tier::Guarded).collect();
     groups.extend([Fault::Trap, Fault::OutOfRange].map(stop));
+    groups.extend(of_tier(Tier::Process));
     groups
+}
+
+fn recoveries(tier: Tier, fault: Fault, all: bool) -> Group {
+    let differs = match tier {
+        Tier::Guarded => matches!(fault, Fault::Trap | Fault::ErrorReturn),
+        Tier::Process => matches!(fault, Fault::Trap | Fault::HostKilled),
+    };
+    let is_wanted = |it: &Handling| match it {
+        Handling::StandbyWarm => !fault.leaves_instance(),
+        Handling::SecondaryCold | Handling::SecondaryLoaded => all || differs,
+        _ => true,
+    };
+    let handlings = Handling::RECOVERIES.into_iter();
+    Group {
+        tier,
+        fault,
+        handlings: handlings.filter(is_wanted).collect(),
+    }
 }
