@@ -44,7 +44,8 @@ fn it_reaches_its_target_although_its_container_was_killed() {
     let arguments =
         arguments.flat_map(|(option, file)| [option.to_owned(), file.display().to_string()]);
     let arguments: Vec<String> = arguments.collect();
-    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let fresh = ["--fresh"].into_iter();
+    let arguments: Vec<&str> = fresh.chain(arguments.iter().map(String::as_str)).collect();
     let run = start(&application, &arguments);
     wait_until_driving(&application);
     let processes = Supervised::by(&run);

@@ -144,7 +144,8 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         libraries: libraries(arguments),
         state: StateOptions {
             folder: arguments.state_path.clone(),
-            fresh: arguments.fresh,
+            // A container that goes on where another has died goes on from what that has left.
+            fresh: arguments.fresh && supervised.as_ref().is_none_or(|it| it.restarts() == 0),
         },
         supervised: supervised.clone(),
     };
