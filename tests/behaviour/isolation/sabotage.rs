@@ -4,6 +4,7 @@
 //! By the machine's clock a drive takes half a minute, so there is one; `SABOTAGE_SEEDS=17..37` makes
 //! it twenty.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -94,10 +95,29 @@ fn is_handled(verdict: &Value) -> bool {
     actions.is_some_and(|all| all.iter().any(|action| action["outcome"] == "done"))
 }
 
+/// Whether so many blows to a component are on record, and it has worked since the last of them.
+fn is_back(events: &str, component: &str, blows: usize) -> bool {
+    let line = |event: &str| format!("\"event\":\"{event}\",\"component\":\"{component}\"");
+    let (fault, state) = (line("fault"), line("state"));
+    let (mut recorded, mut works) = (0, false);
+    for line in events.lines() {
+        let is_blow = |(_, kind): &(Signal, &str)| line.contains(&format!("\"kind\":\"{kind}\""));
+        if line.contains(&fault) && BLOWS.iter().any(is_blow) {
+            recorded += 1;
+            works = false;
+        } else if line.contains(&state) {
+            works = line.contains("\"to\":\"ACTIVE\"");
+        }
+    }
+    works && recorded >= blows
+}
+
 /// Hits the process of a random component every half a second until the robot has arrived. Who was
 /// hit is left alone until the log says that it is back.
 fn sabotage(application: &Application, run: &mut Watched, chance: &mut Chance) -> Vec<Blow> {
     let mut blows: Vec<Blow> = Vec::new();
+    // One that was hit may take a while to die.
+    let mut seen_off = BTreeSet::new();
     let began = Instant::now();
     while began.elapsed() < LONGEST_RUN {
         std::thread::sleep(PERIOD);
@@ -107,18 +127,18 @@ fn sabotage(application: &Application, run: &mut Watched, chance: &mut Chance) -
         let events = application.events_so_far();
         let component = COMPONENTS[chance.index(COMPONENTS.len())];
         let (signal, kind) = BLOWS[chance.index(BLOWS.len())];
-        let active = format!(
-            "\"event\":\"state\",\"component\":\"{component}\",\"from\":\"READY\",\"to\":\"ACTIVE\""
-        );
         let own = blows.iter().filter(|(hit, _)| *hit == component).count();
         let has_arrived = events.contains("\"event\":\"target_reached\"");
-        if has_arrived || events.matches(&active).count() <= own {
+        if has_arrived || !is_back(&events, component, own) {
             continue;
         }
         // The oldest is the one that runs; the others stand by.
         let hosts = run.hosts();
         let host = hosts.iter().find(|host| host.runs(component));
-        if host.is_some_and(|host| host.signal(signal)) {
+        if let Some(host) = host
+            && seen_off.insert(host.id())
+            && host.signal(signal)
+        {
             blows.push((component, kind));
         }
     }
