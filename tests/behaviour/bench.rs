@@ -57,7 +57,10 @@ fn recovery_is_measured_for_every_fault_and_handling() {
 
     let rows = study["rows"].as_array().expect("a list");
     let faults = ["trap", "panic", "hang", "error_return", "out_of_range"];
-    for fault in faults {
+    let guarded = faults.map(|fault| ("guarded", fault));
+    let process = faults.map(|fault| ("process", fault));
+    let killed = ("process", "host_killed");
+    for (tier, fault) in guarded.into_iter().chain(process).chain([killed]) {
         for handling in [
             "reset",
             "reset_checkpoint",
@@ -65,13 +68,12 @@ fn recovery_is_measured_for_every_fault_and_handling() {
             "secondary_loaded",
             "secondary_warm",
         ] {
-            let of_it = |row: &&Value| row["fault"] == fault && row["handling"] == handling;
+            let of_it = |row: &&Value| {
+                row["tier"] == tier && row["fault"] == fault && row["handling"] == handling
+            };
             let row = rows.iter().find(of_it);
-            let row = row.unwrap_or_else(|| panic!("{fault}, {handling}: {study:#}"));
-            assert_eq!(
-                (&row["tier"], &row["load_percent"]),
-                (&"guarded".into(), &10.into())
-            );
+            let row = row.unwrap_or_else(|| panic!("{tier}, {fault}, {handling}: {study:#}"));
+            assert_eq!(row["load_percent"], 10, "{row}");
             assert!(row["n"].as_u64().is_some_and(|n| n > 0), "{row}");
             for phase in ["detection_us", "decision_us", "handling_us", "total_us"] {
                 assert!(numbers(&row[phase]), "{phase}: {row}");
