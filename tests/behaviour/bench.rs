@@ -46,7 +46,7 @@ fn recovery_is_measured_for_every_fault_and_handling() {
         .collect();
     assert_eq!(
         names,
-        BTreeSet::from(["dlopen", "process_wake", "signal", "trap"])
+        BTreeSet::from(["death_notice", "dlopen", "process_wake", "signal", "trap"])
     );
     assert!(
         floor
