@@ -39,6 +39,18 @@ fn recovery_is_measured_for_every_fault_and_handling() {
     assert_eq!(keys, BTreeSet::from(["machine", "floor", "rows"]));
     assert!(study["machine"]["cores"].as_u64().is_some_and(|it| it > 0));
 
+    the_floor_is_complete(&study);
+    the_rows_are_complete(&study);
+
+    let picture = std::fs::read_to_string(&picture).expect("a picture");
+    assert!(picture.starts_with("<svg") && picture.contains("load 10 %"));
+    let left: Vec<_> = std::fs::read_dir(folder.path())
+        .expect("the folder")
+        .collect();
+    assert_eq!(left.len(), 1, "nothing is left but the picture: {left:?}");
+}
+
+fn the_floor_is_complete(study: &Value) {
     let floor = study["floor"].as_array().expect("a list");
     let names: BTreeSet<&str> = floor
         .iter()
@@ -54,7 +66,9 @@ fn recovery_is_measured_for_every_fault_and_handling() {
             .all(|row| row["load_percent"] == 10 && numbers(&row["us"])),
         "{study:#}"
     );
+}
 
+fn the_rows_are_complete(study: &Value) {
     let rows = study["rows"].as_array().expect("a list");
     let faults = ["trap", "panic", "hang", "error_return", "out_of_range"];
     let guarded = faults.map(|fault| ("guarded", fault));
@@ -86,11 +100,4 @@ fn recovery_is_measured_for_every_fault_and_handling() {
         .iter()
         .filter(|row| row["handling"] == "emergency_stop");
     assert!(stops.clone().count() > 0 && stops.clone().all(|row| row["lost"].is_null()));
-
-    let picture = std::fs::read_to_string(&picture).expect("a picture");
-    assert!(picture.starts_with("<svg") && picture.contains("load 10 %"));
-    let left: Vec<_> = std::fs::read_dir(folder.path())
-        .expect("the folder")
-        .collect();
-    assert_eq!(left.len(), 1, "nothing is left but the picture: {left:?}");
 }
