@@ -72,7 +72,7 @@ impl Extent {
         };
         Self {
             lengths: vec![1, 4],
-            real_time: Duration::from_millis(100),
+            real_time: Duration::from_millis(500),
             rounds: 1,
             tiers: TIERS.map(of_tier),
         }

@@ -97,7 +97,7 @@ impl Study {
                 chain.grow(extent, progress)?;
             }
         }
-        let mut rows = finish(growing).into_iter();
+        let mut rows = finish(growing)?.into_iter();
         let stopwatches = rows.next();
         Ok(Self {
             rounds: extent.rounds,
@@ -156,18 +156,22 @@ fn chains(extent: &Extent) -> Vec<Growing> {
     chains
 }
 
-fn finish(growing: Vec<Growing>) -> Vec<ChainRow> {
+fn finish(growing: Vec<Growing>) -> io::Result<Vec<ChainRow>> {
     let mut alone_ns = 0.0;
-    let rows = growing.into_iter().filter_map(|growing| {
+    let rows = growing.into_iter().map(|growing| {
         let chain = growing.chain;
-        let (cycle, latency) = (
-            Times::of(growing.cycles_ns)?,
-            Times::of(growing.passages_ns)?,
-        );
+        let nothing = || {
+            let (tier, components) = (chain.tier, chain.components);
+            io::Error::other(format!(
+                "nothing came through a chain of {components} components ({tier})"
+            ))
+        };
+        let cycle = Times::of(growing.cycles_ns).ok_or_else(nothing)?;
+        let latency = Times::of(growing.passages_ns).ok_or_else(nothing)?;
         if chain.components == 0 {
             alone_ns = cycle.typical_ns;
         }
-        Some(ChainRow {
+        Ok(ChainRow {
             components: chain.components,
             rules: chain.rules,
             tier: chain.tier,
