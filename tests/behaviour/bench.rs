@@ -39,6 +39,18 @@ fn recovery_is_measured_for_every_fault_and_handling() {
     assert_eq!(keys, BTreeSet::from(["machine", "floor", "rows"]));
     assert!(study["machine"]["cores"].as_u64().is_some_and(|it| it > 0));
 
+    the_floor_is_complete(&study);
+    the_rows_are_complete(&study);
+
+    let picture = std::fs::read_to_string(&picture).expect("a picture");
+    assert!(picture.starts_with("<svg") && picture.contains("load 10 %"));
+    let left: Vec<_> = std::fs::read_dir(folder.path())
+        .expect("the folder")
+        .collect();
+    assert_eq!(left.len(), 1, "nothing is left but the picture: {left:?}");
+}
+
+fn the_floor_is_complete(study: &Value) {
     let floor = study["floor"].as_array().expect("a list");
     let names: BTreeSet<&str> = floor
         .iter()
@@ -46,7 +58,7 @@ fn recovery_is_measured_for_every_fault_and_handling() {
         .collect();
     assert_eq!(
         names,
-        BTreeSet::from(["dlopen", "process_wake", "signal", "trap"])
+        BTreeSet::from(["death_notice", "dlopen", "process_wake", "signal", "trap"])
     );
     assert!(
         floor
@@ -54,10 +66,15 @@ fn recovery_is_measured_for_every_fault_and_handling() {
             .all(|row| row["load_percent"] == 10 && numbers(&row["us"])),
         "{study:#}"
     );
+}
 
+fn the_rows_are_complete(study: &Value) {
     let rows = study["rows"].as_array().expect("a list");
     let faults = ["trap", "panic", "hang", "error_return", "out_of_range"];
-    for fault in faults {
+    let guarded = faults.map(|fault| ("guarded", fault));
+    let process = faults.map(|fault| ("process", fault));
+    let killed = ("process", "host_killed");
+    for (tier, fault) in guarded.into_iter().chain(process).chain([killed]) {
         for handling in [
             "reset",
             "reset_checkpoint",
@@ -65,13 +82,12 @@ fn recovery_is_measured_for_every_fault_and_handling() {
             "secondary_loaded",
             "secondary_warm",
         ] {
-            let of_it = |row: &&Value| row["fault"] == fault && row["handling"] == handling;
+            let of_it = |row: &&Value| {
+                row["tier"] == tier && row["fault"] == fault && row["handling"] == handling
+            };
             let row = rows.iter().find(of_it);
-            let row = row.unwrap_or_else(|| panic!("{fault}, {handling}: {study:#}"));
-            assert_eq!(
-                (&row["tier"], &row["load_percent"]),
-                (&"guarded".into(), &10.into())
-            );
+            let row = row.unwrap_or_else(|| panic!("{tier}, {fault}, {handling}: {study:#}"));
+            assert_eq!(row["load_percent"], 10, "{row}");
             assert!(row["n"].as_u64().is_some_and(|n| n > 0), "{row}");
             for phase in ["detection_us", "decision_us", "handling_us", "total_us"] {
                 assert!(numbers(&row[phase]), "{phase}: {row}");
@@ -84,11 +100,4 @@ fn recovery_is_measured_for_every_fault_and_handling() {
         .iter()
         .filter(|row| row["handling"] == "emergency_stop");
     assert!(stops.clone().count() > 0 && stops.clone().all(|row| row["lost"].is_null()));
-
-    let picture = std::fs::read_to_string(&picture).expect("a picture");
-    assert!(picture.starts_with("<svg") && picture.contains("load 10 %"));
-    let left: Vec<_> = std::fs::read_dir(folder.path())
-        .expect("the folder")
-        .collect();
-    assert_eq!(left.len(), 1, "nothing is left but the picture: {left:?}");
 }

@@ -44,16 +44,17 @@ fn chains_memory_and_start_are_measured_on_real_runs() {
         })
         .collect();
     let expected = [
-        (0, "none"),
-        (1, "none"),
-        (1, "all"),
-        (4, "none"),
-        (4, "all"),
+        (0, "guarded", "none"),
+        (1, "guarded", "none"),
+        (1, "guarded", "all"),
+        (1, "process", "none"),
+        (1, "process", "all"),
+        (4, "guarded", "none"),
+        (4, "guarded", "all"),
+        (4, "process", "none"),
+        (4, "process", "all"),
     ];
-    assert_eq!(
-        rows,
-        expected.map(|(count, rules)| (count, "guarded", rules))
-    );
+    assert_eq!(rows, expected);
     for row in chains {
         assert_eq!(row["cycle_ns"]["n"], 200, "{row}");
         assert!(number(&row["latency_us"]["n"]) > 0.0, "{row}");
@@ -64,6 +65,15 @@ fn chains_memory_and_start_are_measured_on_real_runs() {
         assert!(number(&row["throughput_hz"]) > 0.0, "{row}");
     }
 
+    memory_is_measured(&result);
+    start_is_measured(&result);
+
+    let drawn = std::fs::read_to_string(&picture).expect("a picture");
+    assert!(drawn.starts_with("<svg") && drawn.ends_with("</svg>\n"));
+    assert!(drawn.contains("guarded, all rules") && drawn.contains("process, all rules"));
+}
+
+fn memory_is_measured(result: &Value) {
     let memory = result["memory"].as_array().expect("memory");
     for (row, (rules, copies)) in memory.iter().zip([
         ("none", 2.0),
@@ -80,16 +90,26 @@ fn chains_memory_and_start_are_measured_on_real_runs() {
         );
         assert!(number(&row["library_copies_kib"]) > 0.0, "{row}");
     }
-    assert_eq!(memory.len(), 4);
+    assert_eq!(memory.len(), 8);
+    for row in memory {
+        let is_hosted = row["tier"] == "process";
+        assert_eq!(number(&row["processes"]) >= 1.0, is_hosted, "{row}");
+        assert!(number(&row["rss_kib"]) > 0.0, "{row}");
+    }
+}
 
-    let start = &result["start"][0];
-    assert_eq!(start["components"], 4);
-    let phases = ["read_ms", "load_ms", "bring_up_ms", "launch_ms"].map(|it| number(&start[it]));
-    assert!(phases.iter().all(|phase| *phase > 0.0), "{start}");
-    let sum: f64 = phases.iter().sum();
-    assert!((number(&start["ms"]) - sum).abs() < 1e-6, "{start}");
-
-    let drawn = std::fs::read_to_string(&picture).expect("a picture");
-    assert!(drawn.starts_with("<svg") && drawn.ends_with("</svg>\n"));
-    assert!(drawn.contains("guarded, all rules"));
+fn start_is_measured(result: &Value) {
+    let starts = result["start"].as_array().expect("starts");
+    for (start, tier) in starts.iter().zip(["guarded", "process"]) {
+        assert_eq!(
+            (&start["components"], &start["tier"]),
+            (&4.into(), &tier.into())
+        );
+        let phases =
+            ["read_ms", "load_ms", "bring_up_ms", "launch_ms"].map(|it| number(&start[it]));
+        assert!(phases.iter().all(|phase| *phase > 0.0), "{start}");
+        let sum: f64 = phases.iter().sum();
+        assert!((number(&start["ms"]) - sum).abs() < 1e-6, "{start}");
+    }
+    assert_eq!(starts.len(), 2);
 }

@@ -11,6 +11,7 @@
 //! running out of memory. The container trusts nothing that stands in the shared memory.
 
 mod answer;
+mod bare_death;
 mod channel;
 mod critical;
 mod deadline;
@@ -32,6 +33,7 @@ mod serve;
 mod setup;
 mod socket;
 
+pub use bare_death::BareDeath;
 pub use group::Hosts;
 pub use instance::{Hosted, HostedComponent};
 pub use remains::RemoteScene;

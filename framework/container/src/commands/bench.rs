@@ -41,6 +41,12 @@ enum Study {
         /// Its shared memory.
         memory: PathBuf,
     },
+    /// Wait to be killed by the process that measures the floor.
+    #[command(hide = true)]
+    Mortal {
+        /// Its shared memory.
+        memory: PathBuf,
+    },
     /// Measure some rows of `bench recovery` in this process.
     #[command(hide = true)]
     Batch(recovery::BatchArguments),
@@ -55,6 +61,7 @@ pub fn run(arguments: &BenchArguments) -> ExitCode {
         Study::Load(arguments) => load::run(arguments),
         Study::Floor(arguments) => recovery::run_floor(arguments),
         Study::WakePartner { memory } => recovery::run_partner(memory),
+        Study::Mortal { memory } => recovery::run_mortal(memory),
         Study::Batch(arguments) => recovery::run_batch(arguments),
     }
 }

@@ -6,6 +6,7 @@
 //! is measured. Memory and start are looked at from outside.
 
 mod application;
+mod extent;
 mod memory;
 mod picture;
 mod report;
@@ -22,7 +23,8 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::machine::Machine;
-use study::{Extent, Study};
+use extent::Extent;
+use study::Study;
 
 /// What the study is asked to do.
 #[derive(Debug, Args)]

@@ -12,6 +12,7 @@ mod children;
 mod evaluation;
 mod floor;
 mod killer;
+mod mortal;
 mod picture;
 mod plan;
 mod progress;
@@ -40,6 +41,7 @@ use scenario::{Group, Tier, groups};
 
 pub use batch::{BatchArguments, run as run_batch};
 pub use floor::{FloorArguments, run as run_floor, run_partner};
+pub use mortal::run_mortal;
 
 /// What the study is asked to do.
 #[derive(Debug, Args)]

@@ -7,13 +7,14 @@ use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
 
 /// What is counted, by the names of the result for programs.
-pub(super) const QUANTITIES: [&str; 6] = [
+pub(super) const QUANTITIES: [&str; 7] = [
     "rss_kib",
     "pss_kib",
     "library_copies_kib",
     "threads",
     "open_files",
     "mappings",
+    "processes",
 ];
 const RSS: usize = 0;
 const PSS: usize = 1;
@@ -21,10 +22,11 @@ const COPIES: usize = 2;
 const THREADS: usize = 3;
 const FILES: usize = 4;
 const MAPPINGS: usize = 5;
+const PROCESSES: usize = 6;
 
 /// What a process and its descendants take, one number for each of [`QUANTITIES`]: resident pages
 /// with shared ones counted in each process and divided among them, copies of libraries in memory
-/// files (what is mapped of them is resident, too), threads, open files, mappings.
+/// files (what is mapped of them is resident, too), threads, open files, mappings, processes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Footprint(pub(super) [f64; QUANTITIES.len()]);
 
@@ -101,6 +103,7 @@ fn add(
     sum.0[RSS] += field(&rollup, "Rss:");
     sum.0[PSS] += field(&rollup, "Pss:");
     sum.0[MAPPINGS] += maps.lines().count() as f64;
+    sum.0[PROCESSES] += 1.0;
     Ok(children)
 }
 
@@ -127,7 +130,7 @@ mod tests {
     #[test]
     fn this_process_takes_something() {
         let footprint = footprint(std::process::id()).expect("this process is there");
-        for quantity in [RSS, PSS, THREADS, FILES, MAPPINGS] {
+        for quantity in [RSS, PSS, THREADS, FILES, MAPPINGS, PROCESSES] {
             assert!(footprint.0[quantity] > 0.0, "{}", QUANTITIES[quantity]);
         }
     }

@@ -3,8 +3,9 @@
 
 use std::fmt::Write as _;
 
+use super::extent::TIERS;
 use super::rules::Rules;
-use super::study::{ChainRow, Study, TIERS};
+use super::study::{ChainRow, Study};
 use super::times::Times;
 
 const WIDTH: f64 = 860.0;

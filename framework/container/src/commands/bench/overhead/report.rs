@@ -86,14 +86,14 @@ fn write_memory(output: &mut impl Write, study: &Study) -> io::Result<()> {
     )?;
     writeln!(
         output,
-        "{:<8}{:<16}{:>10}{:>10}{:>10}{:>9}{:>12}{:>10}",
-        "tier", "rules", "RSS", "PSS", "copies", "threads", "open files", "mappings"
+        "{:<8}{:<16}{:>10}{:>10}{:>10}{:>9}{:>12}{:>10}{:>11}",
+        "tier", "rules", "RSS", "PSS", "copies", "threads", "open files", "mappings", "processes"
     )?;
     for row in &study.memory {
-        let [rss, pss, copies, threads, files, mappings] = row.each.0;
+        let [rss, pss, copies, threads, files, mappings, processes] = row.each.0;
         writeln!(
             output,
-            "{:<8}{:<16}{rss:>10.0}{pss:>10.0}{copies:>10.0}{threads:>9.1}{files:>12.1}{mappings:>10.1}",
+            "{:<8}{:<16}{rss:>10.0}{pss:>10.0}{copies:>10.0}{threads:>9.1}{files:>12.1}{mappings:>10.1}{processes:>11.1}",
             row.tier,
             row.rules.name(),
         )?;

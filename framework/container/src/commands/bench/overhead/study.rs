@@ -6,13 +6,11 @@ use std::time::Duration;
 use indicatif::ProgressBar;
 
 use super::application::{Chain, Execution};
+use super::extent::{Extent, TierExtent};
 use super::memory::Footprint;
 use super::rules::Rules;
 use super::times::Times;
 use super::trial::{self, Pace, Start};
-
-/// The isolation tiers that are measured, by the words of the rules.
-pub(super) const TIERS: [&str; 2] = ["guarded", "process"];
 
 /// Period of components that have a thread each, in ms: their work is not what is looked at.
 const ALONE_PERIOD_MS: u32 = 100;
@@ -28,53 +26,6 @@ const MEMORY: [Rules; 4] = [
 /// How long an application runs whose start is measured, in the container's time: longer than all
 /// its threads take to begin.
 const START_RUN: Duration = Duration::from_secs(1);
-
-/// How much is measured.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Extent {
-    /// Components in a chain.
-    pub(super) lengths: Vec<usize>,
-    /// Cycles of a free run, and of them the last so many count.
-    pub(super) cycles: u32,
-    /// Cycles that count.
-    pub(super) samples: usize,
-    /// How long a run in real time takes.
-    pub(super) real_time: Duration,
-    /// How often everything is run, one after the other.
-    pub(super) rounds: u32,
-    /// Memory: components of the smaller and of the larger application.
-    pub(super) memory: [usize; 2],
-    /// Start: components of the applications.
-    pub(super) start: Vec<usize>,
-}
-
-impl Extent {
-    /// Within five minutes on two cores.
-    pub(super) fn usual() -> Self {
-        Self {
-            lengths: vec![1, 2, 4, 8, 16, 32, 64],
-            cycles: 30_000,
-            samples: 20_000,
-            real_time: Duration::from_millis(1500),
-            rounds: 3,
-            memory: [10, 110],
-            start: vec![10, 100, 1000],
-        }
-    }
-
-    /// To see that it works: figures of this mean little.
-    pub(super) fn quick() -> Self {
-        Self {
-            lengths: vec![1, 4],
-            cycles: 300,
-            samples: 200,
-            real_time: Duration::from_millis(100),
-            rounds: 1,
-            memory: [1, 5],
-            start: vec![4],
-        }
-    }
-}
 
 /// A chain, all rounds together.
 #[derive(Debug)]
@@ -138,15 +89,15 @@ impl Study {
     pub(super) fn run(extent: &Extent, progress: &ProgressBar) -> io::Result<Self> {
         let mut growing = chains(extent);
         let rounds = extent.rounds as usize;
-        let runs = (growing.len() * 2 + extent.start.len() * TIERS.len()) * rounds
-            + MEMORY.len() * TIERS.len() * 2;
+        let starts: usize = extent.tiers.iter().map(|it| it.start.len()).sum();
+        let runs = (growing.len() * 2 + starts) * rounds + MEMORY.len() * extent.tiers.len() * 2;
         progress.set_length(runs as u64);
         for _ in 0..rounds {
             for chain in &mut growing {
                 chain.grow(extent, progress)?;
             }
         }
-        let mut rows = finish(growing).into_iter();
+        let mut rows = finish(growing)?.into_iter();
         let stopwatches = rows.next();
         Ok(Self {
             rounds: extent.rounds,
@@ -161,6 +112,8 @@ impl Study {
 /// A chain whose rounds are not over.
 struct Growing {
     chain: Chain,
+    /// Of a free run.
+    cycles: u32,
     cycles_ns: Vec<u64>,
     passages_ns: Vec<u64>,
 }
@@ -168,7 +121,7 @@ struct Growing {
 impl Growing {
     fn grow(&mut self, extent: &Extent, progress: &ProgressBar) -> io::Result<()> {
         progress.set_message(format!("chain of {}", self.chain.components));
-        let free = trial::run(&self.chain, Pace::Free(extent.cycles))?;
+        let free = trial::run(&self.chain, Pace::Free(self.cycles))?;
         self.cycles_ns.extend(free.cycles_ns);
         progress.inc(1);
         let periodic = trial::run(&self.chain, Pace::Periodic(extent.real_time))?;
@@ -180,20 +133,21 @@ impl Growing {
 
 /// The stopwatches alone, then all chains, those that are compared next to each other.
 fn chains(extent: &Extent) -> Vec<Growing> {
-    let growing = |components, rules, tier| Growing {
+    let growing = |components, rules, of: &TierExtent| Growing {
         chain: Chain {
             components,
             execution: Execution::Together,
             rules,
-            tier,
-            samples: extent.samples,
+            tier: of.tier,
+            samples: of.samples,
         },
+        cycles: of.cycles,
         cycles_ns: Vec::new(),
         passages_ns: Vec::new(),
     };
-    let mut chains = vec![growing(0, Rules::None, TIERS[0])];
+    let mut chains = vec![growing(0, Rules::None, &extent.tiers[0])];
     for components in &extent.lengths {
-        for tier in TIERS {
+        for tier in &extent.tiers {
             for rules in [Rules::None, Rules::All] {
                 chains.push(growing(*components, rules, tier));
             }
@@ -202,18 +156,22 @@ fn chains(extent: &Extent) -> Vec<Growing> {
     chains
 }
 
-fn finish(growing: Vec<Growing>) -> Vec<ChainRow> {
+fn finish(growing: Vec<Growing>) -> io::Result<Vec<ChainRow>> {
     let mut alone_ns = 0.0;
-    let rows = growing.into_iter().filter_map(|growing| {
+    let rows = growing.into_iter().map(|growing| {
         let chain = growing.chain;
-        let (cycle, latency) = (
-            Times::of(growing.cycles_ns)?,
-            Times::of(growing.passages_ns)?,
-        );
+        let nothing = || {
+            let (tier, components) = (chain.tier, chain.components);
+            io::Error::other(format!(
+                "nothing came through a chain of {components} components ({tier})"
+            ))
+        };
+        let cycle = Times::of(growing.cycles_ns).ok_or_else(nothing)?;
+        let latency = Times::of(growing.passages_ns).ok_or_else(nothing)?;
         if chain.components == 0 {
             alone_ns = cycle.typical_ns;
         }
-        Some(ChainRow {
+        Ok(ChainRow {
             components: chain.components,
             rules: chain.rules,
             tier: chain.tier,
@@ -228,11 +186,11 @@ fn finish(growing: Vec<Growing>) -> Vec<ChainRow> {
 /// Each has its application twice, of different size: what both have is not the components'.
 fn memory(extent: &Extent, progress: &ProgressBar) -> io::Result<Vec<MemoryRow>> {
     let mut rows = Vec::new();
-    for tier in TIERS {
+    for TierExtent { tier, memory, .. } in &extent.tiers {
         for rules in MEMORY {
-            progress.set_message(format!("memory, {}", rules.name()));
+            progress.set_message(format!("memory, {tier}, {}", rules.name()));
             let mut sizes = [Footprint::default(); 2];
-            for (size, components) in sizes.iter_mut().zip(extent.memory) {
+            for (size, components) in sizes.iter_mut().zip(*memory) {
                 let chain = Chain {
                     components,
                     execution: Execution::Alone(ALONE_PERIOD_MS),
@@ -247,7 +205,7 @@ fn memory(extent: &Extent, progress: &ProgressBar) -> io::Result<Vec<MemoryRow>>
             rows.push(MemoryRow {
                 rules,
                 tier,
-                each: larger.each(&smaller, extent.memory[1] - extent.memory[0]),
+                each: larger.each(&smaller, memory[1] - memory[0]),
             });
         }
     }
@@ -256,8 +214,8 @@ fn memory(extent: &Extent, progress: &ProgressBar) -> io::Result<Vec<MemoryRow>>
 
 fn start(extent: &Extent, progress: &ProgressBar) -> io::Result<Vec<StartRow>> {
     let mut rows = Vec::new();
-    for tier in TIERS {
-        for components in &extent.start {
+    for TierExtent { tier, start, .. } in &extent.tiers {
+        for components in start {
             progress.set_message(format!("start of {components}"));
             let chain = Chain {
                 components: *components,

@@ -22,6 +22,9 @@ pub(super) const CALLBACK_DEADLINE_MS: u64 = 1;
 const KILLED_CALLBACK_MS: u64 = 20;
 const KILLED_DEADLINE_MS: u64 = 100;
 
+/// One callback is so: before its host is killed, and the successor makes good for it, this is over.
+const KILLED_WINDOW_US: u64 = 200;
+
 /// Cycles before the first fault: all threads have started, first checkpoints have been taken.
 const QUIET_CYCLES: u64 = 50;
 
@@ -158,7 +161,9 @@ impl Batch {
     fn injections(&self) -> String {
         let every: u64 = self.relays().map(|(_, it)| self.group.cycles(it)).sum();
         let repeat = self.faults;
-        let killed = format!("fault=\"slow\" duration=\"{KILLED_CALLBACK_MS}ms\"");
+        let killed = format!(
+            "fault=\"slow\" duration=\"{KILLED_CALLBACK_MS}ms\" for=\"{KILLED_WINDOW_US}us\""
+        );
         let what = match self.group.fault {
             Fault::HostKilled => &killed,
             Fault::Trap => "fault=\"segfault\"",

@@ -13,6 +13,7 @@ use container::guard::BareTrap;
 use container::library::{LibrarySearch, LoadedLibrary};
 use serde::{Deserialize, Serialize};
 
+use super::mortal::time_death;
 use super::real_time::{PRIORITY, ask_for_real_time, lock_memory};
 use super::signalled::Signalled;
 use crate::commands::bench::offspring::{end_with_parent, end_within};
@@ -76,11 +77,12 @@ fn measure(arguments: &FloorArguments) -> io::Result<Vec<Operation>> {
     let mut traps = Traps::new()?;
     let signalled = Signalled::start()?;
     let partner = Partner::start()?;
-    let mut operations: [(&str, Timed); 4] = [
+    let mut operations: [(&str, Timed); 5] = [
         ("dlopen", Box::new(move || time_load(&library))),
         ("trap", Box::new(move || traps.time())),
         ("signal", Box::new(move || signalled.time())),
         ("process_wake", Box::new(move || partner.time())),
+        ("death_notice", Box::new(time_death)),
     ];
     let mut samples: Vec<Vec<u64>> = vec![Vec::new(); operations.len()];
     for _ in 0..arguments.n {

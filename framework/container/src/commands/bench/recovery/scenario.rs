@@ -155,8 +155,9 @@ impl Group {
 
 /// The rows; `all` of them, or without those that differ from another one in nothing but detection:
 /// what it takes to put a secondary in the place of an instance depends on how far it was prepared,
-/// and on whether the old one is dead (trap, host killed) or has to be given up (error return; as
-/// for a host, that is the same).
+/// and on whether the old one is dead (trap) or has to be given up (error return). A host is started
+/// for each fault that ends one, which takes many times what is measured; so of these rows there is
+/// one for each fault, and more only of hosts that are killed.
 ///
 /// An emergency stop stops everything, so it has an application of its own; how it comes about does
 /// not matter to it, nor does the tier, so it is measured for a component that dies and for bad data.
@@ -178,19 +179,25 @@ pub(super) fn groups(all: bool) -> Vec<Group> {
 }
 
 fn recoveries(tier: Tier, fault: Fault, all: bool) -> Group {
-    let differs = match tier {
-        Tier::Guarded => matches!(fault, Fault::Trap | Fault::ErrorReturn),
-        Tier::Process => matches!(fault, Fault::Trap | Fault::HostKilled),
-    };
-    let is_wanted = |it: &Handling| match it {
-        Handling::StandbyWarm => !fault.leaves_instance(),
-        Handling::SecondaryCold | Handling::SecondaryLoaded => all || differs,
-        _ => true,
-    };
-    let handlings = Handling::RECOVERIES.into_iter();
+    let is_possible = |it: &Handling| *it != Handling::StandbyWarm || !fault.leaves_instance();
+    let is_wanted = |it: &Handling| all || is_telling(tier, fault, *it);
+    let handlings = Handling::RECOVERIES.into_iter().filter(is_possible);
     Group {
         tier,
         fault,
         handlings: handlings.filter(is_wanted).collect(),
+    }
+}
+
+/// Whether a row differs from others in more than detection.
+fn is_telling(tier: Tier, fault: Fault, handling: Handling) -> bool {
+    use Handling::{Reset, ResetCheckpoint, SecondaryCold, SecondaryLoaded, StandbyWarm};
+    match (tier, fault) {
+        (Tier::Guarded, Fault::Trap | Fault::ErrorReturn) => true,
+        (Tier::Guarded, _) => !matches!(handling, SecondaryCold | SecondaryLoaded),
+        // A reset has a second copy that is loaded, as this secondary is.
+        (Tier::Process, Fault::HostKilled) => handling != SecondaryLoaded,
+        (Tier::Process, Fault::Trap | Fault::Panic | Fault::Hang) => handling == StandbyWarm,
+        (Tier::Process, _) => matches!(handling, Reset | ResetCheckpoint),
     }
 }
