@@ -146,7 +146,7 @@ impl Group {
     pub(super) fn cycles(&self, handling: Handling) -> u64 {
         let in_place = self.fault.leaves_instance() && handling.secondary_preload().is_none();
         match (self.tier, handling) {
-            (Tier::Process, _) if !in_place => 5,
+            (Tier::Process, _) if !in_place => 10,
             (_, Handling::SecondaryCold | Handling::EmergencyStop) => 3,
             _ => 2,
         }
