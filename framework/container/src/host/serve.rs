@@ -19,7 +19,7 @@ use crate::clock::nanoseconds;
 use crate::guard::loss::{Loss, losses, wait_for_loss};
 use crate::guard::{CallLimit, Callback, Ending, Guarded, ServiceCall, Trap, interrupt};
 use crate::library::LoadedLibrary;
-use crate::scheduling::outrank_components;
+use crate::scheduling::{be_ordinary, outrank_components};
 use crate::watchdog::TICK;
 
 /// How often lost threads are looked for if no word of one came.
@@ -61,6 +61,9 @@ fn serve() -> std::io::Result<()> {
     std::thread::Builder::new()
         .name("losses".to_owned())
         .spawn(move || watch_for_losses(&watched))?;
+    // A death is told by the death of this thread, which sleeps all its life; it must not wait for
+    // a processor then.
+    outrank_components();
     let mut is_bounded = false;
     while let Some((message, files)) = socket::receive(control.as_fd())? {
         let setup: Setup = serde_json::from_slice(&message)?;
@@ -86,7 +89,11 @@ fn serve() -> std::io::Result<()> {
             .push(Arc::clone(&post));
         std::thread::Builder::new()
             .name(post.setup.component.clone())
-            .spawn(move || run(&post, devices))?;
+            .spawn(move || {
+                // Not as the thread that made it, which outranks components.
+                let _as_it_was = be_ordinary();
+                run(&post, devices);
+            })?;
     }
     Ok(())
 }
