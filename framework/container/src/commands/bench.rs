@@ -1,6 +1,7 @@
 //! `steadfast bench`: how good Steadfast is at what it does, measured here and now.
 
 mod detection;
+mod drawing;
 mod load;
 mod machine;
 mod offspring;
@@ -12,7 +13,7 @@ mod recovery;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 
 /// What `steadfast bench` is asked to do.
 #[derive(Debug, Args)]
@@ -50,6 +51,15 @@ enum Study {
     /// Measure some rows of `bench recovery` in this process.
     #[command(hide = true)]
     Batch(recovery::BatchArguments),
+}
+
+/// How a result is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// For people: tables
+    Text,
+    /// For programs: one JSON object
+    Json,
 }
 
 /// Runs a study and writes its result to standard output.

@@ -16,7 +16,9 @@ use std::io::{self, IsTerminal as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+
+use super::Format;
 use system_profile::load_process_model;
 
 use crate::commands::problems;
@@ -47,15 +49,6 @@ pub struct DetectionArguments {
     /// How the result is written
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-}
-
-/// How the result is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// For people: a table
-    Text,
-    /// For programs: one JSON object
-    Json,
 }
 
 /// Runs the study. The exit code is 1 if the model has problems, 2 if a file cannot be written or

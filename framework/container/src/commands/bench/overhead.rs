@@ -19,9 +19,10 @@ use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::Format;
 use super::machine::Machine;
 use extent::Extent;
 use study::Study;
@@ -38,15 +39,6 @@ pub struct OverheadArguments {
     /// How the result is written
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-}
-
-/// How the result is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// For people: tables
-    Text,
-    /// For programs: one JSON object
-    Json,
 }
 
 /// Runs the study. The exit code is 2 if a run fails or a file cannot be written.

@@ -28,8 +28,9 @@ use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
+use super::Format;
 use super::load::Load;
 use super::machine::Machine;
 use application::Batch;
@@ -80,15 +81,6 @@ pub struct RecoveryArguments {
     /// Also look for the component under test in this folder; may be given several times
     #[arg(long = "library-path", value_name = "FOLDER")]
     library_path: Vec<PathBuf>,
-}
-
-/// How the result is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// For people: a table
-    Text,
-    /// For programs: one JSON object
-    Json,
 }
 
 /// Of a first impression.

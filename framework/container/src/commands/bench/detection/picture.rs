@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::study::{Curve, Point, Study, quantile_of};
+use crate::commands::bench::drawing::{line, text};
 
 const WIDTH: f64 = 860.0;
 const HEIGHT: f64 = 520.0;
@@ -147,19 +148,4 @@ fn x(alarms: f64) -> f64 {
 
 fn y(delay_ms: f64) -> f64 {
     BOTTOM - delay_ms / DELAY_MAXIMUM_MS * (BOTTOM - TOP)
-}
-
-fn line(svg: &mut String, [x1, y1, x2, y2]: [f64; 4], colour: &str, dash: &str) {
-    let _infallible = writeln!(
-        svg,
-        "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" stroke=\"{colour}\" \
-         stroke-dasharray=\"{dash}\"/>"
-    );
-}
-
-fn text(svg: &mut String, x: f64, y: f64, anchor: &str, text: &str) {
-    let _infallible = writeln!(
-        svg,
-        "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>"
-    );
 }

@@ -7,6 +7,7 @@ use super::extent::TIERS;
 use super::rules::Rules;
 use super::study::{ChainRow, Study};
 use super::times::Times;
+use crate::commands::bench::drawing::{line, text};
 
 const WIDTH: f64 = 860.0;
 const HEIGHT: f64 = 480.0;
@@ -162,19 +163,4 @@ fn legend(svg: &mut String) {
         }
     }
     text(svg, WIDTH - 20.0, y, "end", "dashed: 99th percentile");
-}
-
-fn line(svg: &mut String, [x1, y1, x2, y2]: [f64; 4], colour: &str, dash: &str) {
-    let _infallible = writeln!(
-        svg,
-        "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" stroke=\"{colour}\" \
-         stroke-dasharray=\"{dash}\"/>"
-    );
-}
-
-fn text(svg: &mut String, x: f64, y: f64, anchor: &str, text: &str) {
-    let _infallible = writeln!(
-        svg,
-        "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>"
-    );
 }

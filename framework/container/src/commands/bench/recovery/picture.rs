@@ -4,6 +4,7 @@
 use std::fmt::Write as _;
 
 use super::results::{FloorRow, RecoveryRow, Results};
+use crate::commands::bench::drawing::line;
 use crate::commands::bench::percentiles::Percentiles;
 
 const LABELS_WIDTH: f64 = 240.0;
@@ -219,14 +220,6 @@ impl Scale {
 
 fn row_y(place: usize) -> f64 {
     TOP + ROW_HEIGHT * (place as f64 + 0.5)
-}
-
-fn line(svg: &mut String, [x1, y1, x2, y2]: [f64; 4], colour: &str, dash: &str) {
-    let _infallible = writeln!(
-        svg,
-        "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" stroke=\"{colour}\" \
-         stroke-dasharray=\"{dash}\"/>"
-    );
 }
 
 fn text(svg: &mut String, [x, y]: [f64; 2], anchor: &str, colour: &str, size: u32, text: &str) {
