@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use rustix::process::Signal;
+use rustix::process::{Pid, Signal};
 use tests::{Application, Supervised, Watched, repository, take_turn, until};
 
 use super::{LIMIT, PATIENT};
@@ -22,6 +22,15 @@ fn wait_until_driving(application: &Application) {
     operator.socket();
     let cycles = || operator.status()["components"]["path_planner"]["cycles"].as_u64();
     assert!(until(LIMIT, || cycles() > Some(75)), "it does not drive");
+}
+
+/// A run whose robot drives, with its container and its world.
+fn drive(application: &Application, arguments: &[&str]) -> (Watched, Pid, Pid) {
+    let run = start(application, arguments);
+    wait_until_driving(application);
+    let processes = Supervised::by(&run);
+    let (container, world) = (processes.container(None), processes.world());
+    (run, container, world)
 }
 
 fn picture(application: &Application) -> PathBuf {
@@ -46,10 +55,7 @@ fn it_reaches_its_target_although_its_container_was_killed() {
     let arguments: Vec<String> = arguments.collect();
     let fresh = ["--fresh"].into_iter();
     let arguments: Vec<&str> = fresh.chain(arguments.iter().map(String::as_str)).collect();
-    let run = start(&application, &arguments);
-    wait_until_driving(&application);
-    let processes = Supervised::by(&run);
-    let (container, world) = (processes.container(None), processes.world());
+    let (run, container, world) = drive(&application, &arguments);
     Supervised::signal(container, Signal::KILL);
     let outcome = application.outcome(run.wait(2 * LIMIT)).ended_well();
     let summary = outcome.summary();
@@ -69,10 +75,7 @@ fn it_reaches_its_target_although_its_container_was_killed() {
 fn nothing_is_left_of_a_parent_that_was_killed() {
     let _turn = take_turn();
     let application = Application::new();
-    let run = start(&application, &[]);
-    let processes = Supervised::by(&run);
-    let (container, world) = (processes.container(None), processes.world());
-    wait_until_driving(&application);
+    let (run, container, world) = drive(&application, &[]);
     run.signal(Signal::KILL);
     Supervised::assert_ends(container);
     Supervised::assert_ends(world);
@@ -82,10 +85,7 @@ fn nothing_is_left_of_a_parent_that_was_killed() {
 fn a_world_that_dies_ends_the_run() {
     let _turn = take_turn();
     let application = Application::new();
-    let run = start(&application, &[]);
-    let processes = Supervised::by(&run);
-    let (container, world) = (processes.container(None), processes.world());
-    wait_until_driving(&application);
+    let (run, container, world) = drive(&application, &[]);
     Supervised::signal(world, Signal::KILL);
     let finished = run.wait(LIMIT);
     assert_eq!(finished.code, Some(6), "{finished}");
