@@ -107,7 +107,9 @@ fn two_hundred_random_kills_leave_nothing() {
         nothing_lives(&application);
     }
     println!("{kills} kills in {:?}", began.elapsed());
-    assert_eq!(zombies(), 0, "dead children were left to the caller");
+    // Those of tests beside this one are reaped soon; what is left would stay.
+    let all_reaped = until(LIMIT, || zombies() == 0);
+    assert!(all_reaped, "dead children were left to the caller");
     let new: Vec<String> = shared_memory().difference(&before).cloned().collect();
     let ours = |name: &&String| name.contains("steadfast") || name.contains("component");
     assert_eq!(new.iter().find(ours), None, "{new:?}");
