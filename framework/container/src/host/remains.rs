@@ -8,9 +8,10 @@ use super::channel::Channel;
 use super::layout::{Area, Layout};
 use super::process::HostProcess;
 
-/// A backtrace takes milliseconds of reading and parsing; a host that is not done by then is not
-/// waited for.
-const LONGEST_WAIT: Duration = Duration::from_secs(1);
+/// A backtrace takes milliseconds of reading and parsing, and a dead host is reaped as soon; on a
+/// machine whose processors are kept busy at real-time priority more than a second was seen. One
+/// that is not done by then is not waited for.
+const LONGEST_WAIT: Duration = Duration::from_secs(5);
 
 /// How often is looked whether it is there.
 const LOOK: Duration = Duration::from_millis(1);
