@@ -158,7 +158,7 @@ impl Hosted {
     }
 
     /// Runs a callback to its end; what the component asks for is answered by `services`. After
-    /// `limit` the host is killed.
+    /// `limit` the host breaks it off; a host that does not manage that is killed.
     pub fn call<Services: HostServices>(
         &mut self,
         callback: Callback,
