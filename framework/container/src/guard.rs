@@ -30,6 +30,7 @@ mod signals;
 mod stack;
 mod stray;
 mod table;
+mod ticks;
 mod trap;
 pub mod watch;
 
@@ -52,6 +53,7 @@ pub use injection::Misbehaviour;
 pub use interpose::Exit;
 pub use registers::Registers;
 pub use scene::Scene;
+pub(crate) use ticks::ticks;
 pub use trap::Trap;
 pub use watch::CallLimit;
 

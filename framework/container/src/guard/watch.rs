@@ -1,8 +1,10 @@
 //! What a lane's thread is in, published so that a watchdog can tell a hang. A callback costs its
-//! thread three stores to memory of its own, and no look at a clock.
+//! thread four stores to memory of its own and the processor's counter, and no look at a clock.
 
 use std::sync::atomic::{AtomicI32, AtomicU32, AtomicU64, Ordering};
 use std::time::Duration;
+
+use super::ticks::ticks;
 
 /// How long a callback may take: a multiple of 100 us, at most seven hours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
@@ -75,6 +77,10 @@ pub(crate) struct Watched {
 pub struct Watch {
     /// Generation, depth, limit: one word, so that they are never of different callbacks.
     inside: AtomicU64,
+    /// The processor's counter when the thread came there; never before `inside` was so.
+    since_ticks: AtomicU64,
+    /// Of all limits so far; 0: there was none.
+    shortest: AtomicU32,
     generation: AtomicU32,
     /// The lane's thread as the kernel numbers it; 0: none.
     thread: AtomicI32,
@@ -108,12 +114,23 @@ impl Watch {
 
     /// What the thread is in now.
     pub fn inside(&self) -> Inside {
-        let mut inside = Inside::from_word(self.inside.load(Ordering::Relaxed));
+        let mut inside = Inside::from_word(self.inside.load(Ordering::Acquire));
         let hurry = self.hurry.load(Ordering::Relaxed);
         if hurry > 0 && inside.limit > CallLimit(hurry) {
             inside.limit = CallLimit(hurry);
         }
         inside
+    }
+
+    /// The processor's counter when the thread came into what it is in, or later: to be asked after
+    /// [`Self::inside`].
+    pub(crate) fn since_ticks(&self) -> u64 {
+        self.since_ticks.load(Ordering::Acquire)
+    }
+
+    /// The shortest limit of a callback that the lane has been in; none if none had one.
+    pub(crate) fn shortest_limit(&self) -> CallLimit {
+        CallLimit(self.shortest.load(Ordering::Relaxed))
     }
 
     /// From now on no callback may take longer than this: the fault manager waits for the lane,
@@ -158,8 +175,19 @@ impl Watch {
         let own = (u64::from(generation) << GENERATION_SHIFT)
             | (depth << LIMIT_BITS)
             | u64::from(limit.0);
-        self.inside.store(own, Ordering::Relaxed);
+        // One below zero is the longest of all.
+        if limit.0.wrapping_sub(1) < self.shortest.load(Ordering::Relaxed).wrapping_sub(1) {
+            self.shortest.store(limit.0, Ordering::Relaxed);
+        }
+        self.begin(own);
         Watched { own, outer }
+    }
+
+    /// In this from now on. The time is there first: it is never too early for what is read with it.
+    #[inline]
+    fn begin(&self, inside: u64) {
+        self.since_ticks.store(ticks(), Ordering::Release);
+        self.inside.store(inside, Ordering::Release);
     }
 
     #[inline]
@@ -170,7 +198,7 @@ impl Watch {
 
     #[inline]
     pub(super) fn resume(&self, watched: &Watched) {
-        self.inside.store(watched.own, Ordering::Relaxed);
+        self.begin(watched.own);
     }
 
     #[inline]

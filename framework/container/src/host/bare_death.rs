@@ -29,7 +29,7 @@ impl BareDeath {
     /// # Errors
     /// If the system refuses the memory.
     pub fn create() -> io::Result<Self> {
-        let channel = Channel::create(SIZE)?;
+        let channel = Channel::create(SIZE, SIZE)?;
         Ok(Self { channel })
     }
 
@@ -67,7 +67,7 @@ impl BareDeath {
             return Err(io::Error::other("this is no shared memory of a life"));
         }
         // Never unmapped: the kernel looks at it when the process dies.
-        let channel = Box::leak(Box::new(Channel::open(file.into(), SIZE)?));
+        let channel = Box::leak(Box::new(Channel::open(file.into(), SIZE, SIZE)?));
         SignsOfLife::new()?.show(channel);
         channel.hand_to_container();
         std::thread::sleep(PATIENCE);

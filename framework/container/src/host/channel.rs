@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 use std::time::Duration;
 
 use rustix::fs::{MemfdFlags, SealFlags};
-use rustix::mm::{MapFlags, ProtFlags};
+use rustix::mm::{Advice, MapFlags, MprotectFlags, ProtFlags};
 use rustix::thread::futex;
 use rustix::time::ClockId;
 
@@ -72,39 +72,46 @@ pub(super) enum Waited {
 }
 
 impl Channel {
-    /// New shared memory of this size, mapped; it is the host's turn.
+    /// New shared memory of this size, mapped, of which the first `front` bytes are used all the
+    /// time; it is the host's turn.
     ///
     /// # Errors
     /// If the machine has no room.
-    pub(super) fn create(size: usize) -> io::Result<Self> {
+    pub(super) fn create(size: usize, front: usize) -> io::Result<Self> {
         let flags = MemfdFlags::CLOEXEC | MemfdFlags::ALLOW_SEALING;
         let memory = rustix::fs::memfd_create(c"component", flags)?;
         rustix::fs::ftruncate(&memory, size as u64)?;
         // A host that shortens it would take the container's memory away under its feet.
         let seals = SealFlags::SHRINK | SealFlags::GROW | SealFlags::SEAL;
         rustix::fs::fcntl_add_seals(&memory, seals)?;
-        let channel = Self::open(memory, size)?;
+        let channel = Self::open(memory, size, front)?;
         channel.turn().store(HOST, Ordering::Release);
         Ok(channel)
     }
 
-    /// Maps memory that the other side has made.
+    /// Maps memory that the other side has made; `front` as for [`Self::create`].
     ///
     /// # Errors
     /// If the machine has no room.
-    pub(super) fn open(memory: OwnedFd, size: usize) -> io::Result<Self> {
-        let protection = ProtFlags::READ | ProtFlags::WRITE;
+    pub(super) fn open(memory: OwnedFd, size: usize, front: usize) -> io::Result<Self> {
+        // Where all memory of a process is locked, a mapping that can be used gets all its pages at
+        // once, and nearly all of these are room for critical memory that few components have.
         // SAFETY: a new mapping at a place that the kernel chooses.
         let base = unsafe {
             rustix::mm::mmap(
                 ptr::null_mut(),
                 size,
-                protection,
+                ProtFlags::empty(),
                 MapFlags::SHARED,
                 &memory,
                 0,
             )
         }?;
+        // SAFETY: the mapping is of this size, and nobody knows it yet.
+        unsafe { rustix::mm::mprotect(base, size, MprotectFlags::READ | MprotectFlags::WRITE) }?;
+        // Older kernels do not know this: then the pages come when they are first used.
+        // SAFETY: as above; the advice changes no content.
+        let _later = unsafe { rustix::mm::madvise(base, front, Advice::LinuxPopulateWrite) };
         Ok(Self {
             base: base.cast(),
             size,

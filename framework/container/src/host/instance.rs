@@ -97,7 +97,7 @@ impl Hosted {
         Guarded::prepare_process();
         let layout = Arc::new(Layout::of(component.ports));
         let in_words = |error: io::Error| format!("its host process does not start: {error}");
-        let channel = Arc::new(Channel::create(layout.total).map_err(in_words)?);
+        let channel = Arc::new(Channel::create(layout.total, layout.front()).map_err(in_words)?);
         let (devices, far) = socket::pair().map_err(in_words)?;
         let process = hosts
             .host(component.group, component.stands_by)

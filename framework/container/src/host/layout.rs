@@ -117,6 +117,11 @@ impl Layout {
         }
     }
 
+    /// Bytes from the beginning that every component uses; critical memory lies behind.
+    pub(super) fn front(&self) -> usize {
+        self.critical.offset
+    }
+
     /// Of a port.
     pub(super) fn port(&self, port: u32) -> PortArea {
         let port = self.ports.get(port as usize);

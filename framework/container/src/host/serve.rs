@@ -75,7 +75,8 @@ fn serve() -> std::io::Result<()> {
             is_bounded = true;
         }
         // Never unmapped: the kernel may look at it when the process dies.
-        let channel = Box::leak(Box::new(Channel::open(memory, setup.layout.total)?));
+        let channel = Channel::open(memory, setup.layout.total, setup.layout.front())?;
+        let channel = Box::leak(Box::new(channel));
         signs.show(channel);
         let post = Arc::new(Post {
             channel,

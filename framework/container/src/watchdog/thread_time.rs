@@ -7,28 +7,28 @@ use std::time::Duration;
 
 use nix::time::{ClockId, clock_gettime};
 
-/// The processor time of a thread, and what it has spent of the time `passed`, at whose begin its
-/// processor time was `before`: while it runs or is ready to run only what it ran, while it sleeps
-/// all.
+/// What a thread has spent of the time that passed until now, in which its processor time went from
+/// `before` to `now`, or began earlier: while it runs or is ready to run only what it ran, while it
+/// sleeps all.
 pub(super) fn spent(
     thread: i32,
     before: Option<Duration>,
+    now: Option<Duration>,
     passed: Duration,
-) -> (Option<Duration>, Duration) {
-    let now = processor_time(thread);
+) -> Duration {
     let (Some(now), Some(before)) = (now, before) else {
-        return (now, Duration::ZERO);
+        return Duration::ZERO;
     };
     let ran = now.saturating_sub(before).min(passed);
-    let spent = if ran >= passed / 2 || is_ready(thread) {
+    if ran >= passed / 2 || is_ready(thread) {
         ran
     } else {
         passed
-    };
-    (Some(now), spent)
+    }
 }
 
-fn processor_time(thread: i32) -> Option<Duration> {
+/// The processor time of a thread; none of one that has ended.
+pub(super) fn processor_time(thread: i32) -> Option<Duration> {
     /// The kernel's number for "this thread's clock, as the scheduler counts".
     const THREAD_CLOCK: i32 = 0b110;
     let clock = ClockId::from_raw((!thread << 3) | THREAD_CLOCK);
@@ -76,14 +76,20 @@ mod tests {
             std::thread::yield_now();
         }
         let passed = Duration::from_secs(1);
-        let (before, first) = spent(thread, None, passed);
-        assert_eq!(first, Duration::ZERO, "nothing to compare with");
-        assert_eq!(spent(thread, before, passed).1, passed);
+        let before = processor_time(thread);
+        let since = |thread, before| spent(thread, before, processor_time(thread), passed);
+        assert_eq!(
+            since(thread, None),
+            Duration::ZERO,
+            "nothing to compare with"
+        );
+        assert_eq!(since(thread, before), passed);
         let own = rustix::thread::gettid().as_raw_nonzero().get();
-        let (before, _) = spent(own, None, passed);
-        assert!(spent(own, before, passed).1 < passed, "it does not sleep");
+        let own_before = processor_time(own);
+        assert!(since(own, own_before) < passed, "it does not sleep");
         drop(end);
         sleeper.join().expect("it ends");
-        assert_eq!(spent(thread, before, passed), (None, Duration::ZERO));
+        assert_eq!(processor_time(thread), None);
+        assert_eq!(since(thread, before), Duration::ZERO);
     }
 }
