@@ -23,6 +23,7 @@ mod instance;
 mod layout;
 mod limits;
 mod message;
+mod meter;
 mod patience;
 mod process;
 mod remains;

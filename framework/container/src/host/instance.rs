@@ -16,6 +16,7 @@ use super::group::Hosts;
 use super::input::{Input, inputs};
 use super::layout::Layout;
 use super::message::{Call, CallbackWords, ToContainer, ToHost};
+use super::meter::Meter;
 use super::patience::Patience;
 use super::process::HostProcess;
 use super::remains::RemoteScene;
@@ -49,6 +50,7 @@ pub struct Hosted {
     devices: OwnedFd,
     /// The host's thread that runs the instance.
     thread: i32,
+    meter: Meter,
     inputs: Vec<Input>,
     /// Of the last call.
     number: u32,
@@ -118,6 +120,7 @@ impl Hosted {
             .map_err(in_words)?;
         drop(far);
         let thread = wait_until_loaded(&channel, &layout, &process)?;
+        let meter = Meter::new(process.number(), thread, component.group.is_none());
         Ok(Self {
             channel,
             inputs: inputs(&layout),
@@ -127,6 +130,7 @@ impl Hosted {
             executor,
             devices,
             thread,
+            meter,
             number: 0,
             injection: None,
             forgets_allocations: false,
@@ -258,7 +262,7 @@ impl Hosted {
         loss: &Loss,
         services: &mut Services,
     ) -> Ending {
-        let mut patience = Patience::new(limit.duration(), self.thread);
+        let mut patience = Patience::new(limit.duration(), self.meter);
         loop {
             let hurry = loss.watch().hurry_limit().duration();
             match self.channel.wait_for_host(patience.next_look(hurry)) {

@@ -166,9 +166,14 @@ impl HostProcess {
         self.ending()
     }
 
+    /// Its number.
+    pub(super) fn number(&self) -> i32 {
+        self.life.process.as_raw_nonzero().get()
+    }
+
     /// Whether a thread of this number is its.
     pub(super) fn has_thread(&self, thread: i32) -> bool {
-        let process = self.life.process.as_raw_nonzero();
+        let process = self.number();
         Path::new(&format!("/proc/{process}/task/{thread}")).exists()
     }
 
