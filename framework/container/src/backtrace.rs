@@ -40,15 +40,18 @@ fn lines(
     registers: &Registers,
     stack: impl Fn(usize) -> Option<usize>,
 ) -> Vec<String> {
+    let mut chain = call_chain(library, registers, stack);
+    chain.retain(|address| library.code.contains(*address));
+    if chain.is_empty() {
+        return Vec::new();
+    }
     let Ok(content) = std::fs::read(whole(&library.file)) else {
         return Vec::new();
     };
     let names = Names::of(&content);
     let mut lines = Vec::new();
-    for address in call_chain(library, registers, stack) {
-        if library.code.contains(address) {
-            lines.extend(names.at((address - library.base) as u64));
-        }
+    for address in chain {
+        lines.extend(names.at((address - library.base) as u64));
         if lines.len() >= MOST_LINES {
             break;
         }

@@ -23,7 +23,6 @@ mod instance;
 mod layout;
 mod limits;
 mod message;
-mod meter;
 mod patience;
 mod process;
 mod remains;

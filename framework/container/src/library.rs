@@ -7,7 +7,7 @@ mod load;
 mod probe;
 mod search;
 
-pub(crate) use copy::whole;
+pub(crate) use copy::{hand_over, sealed, whole};
 pub use description::{ComponentDescription, MethodDescription, PortDescription};
 pub use load::LoadedLibrary;
 pub use probe::{probe, probe_main};

@@ -1,5 +1,7 @@
 //! Names and places of functions, from a library's debug information or its table of symbols.
 
+use std::cell::OnceCell;
+
 use addr2line::gimli::{Dwarf, EndianSlice, RunTimeEndian, SectionId};
 use addr2line::{Context, Frame, demangle_auto};
 use object::{Object as _, ObjectSection as _, SymbolMap, SymbolMapName};
@@ -10,7 +12,9 @@ type Slice<'content> = EndianSlice<'content, RunTimeEndian>;
 #[derive(Default)]
 pub(super) struct Names<'content> {
     context: Option<Context<Slice<'content>>>,
-    symbols: Option<SymbolMap<SymbolMapName<'content>>>,
+    file: Option<object::File<'content>>,
+    /// Read only if the debug information does not know a function: there are thousands.
+    symbols: OnceCell<SymbolMap<SymbolMapName<'content>>>,
 }
 
 impl<'content> Names<'content> {
@@ -32,7 +36,8 @@ impl<'content> Names<'content> {
         };
         Self {
             context: Dwarf::load(load).and_then(Context::from_dwarf).ok(),
-            symbols: Some(file.symbol_map()),
+            file: Some(file),
+            symbols: OnceCell::new(),
         }
     }
 
@@ -69,7 +74,9 @@ impl<'content> Names<'content> {
     }
 
     fn symbol(&self, address: u64) -> String {
-        let symbol = self.symbols.as_ref().and_then(|all| all.before(address));
+        let symbols = self.file.as_ref();
+        let symbols = symbols.map(|file| self.symbols.get_or_init(|| file.symbol_map()));
+        let symbol = symbols.and_then(|all| all.before(address));
         symbol.map_or_else(
             || "unknown function".to_owned(),
             |symbol| demangle_auto(symbol.name().into(), None).into_owned(),

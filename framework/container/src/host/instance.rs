@@ -16,7 +16,6 @@ use super::group::Hosts;
 use super::input::{Input, inputs};
 use super::layout::Layout;
 use super::message::{Call, CallbackWords, ToContainer, ToHost};
-use super::meter::Meter;
 use super::patience::Patience;
 use super::process::HostProcess;
 use super::remains::RemoteScene;
@@ -30,7 +29,7 @@ use crate::guard::{
     CallLimit, Callback, Ending, ForeignBytes, ForeignBytesMut, Guarded, HostServices,
     Misbehaviour, Registers, Trap,
 };
-use crate::library::PortDescription;
+use crate::library::{PortDescription, sealed};
 use crate::wake::Wake;
 
 /// Loading a library takes milliseconds, starting a process a few; a host that takes longer hangs.
@@ -50,7 +49,6 @@ pub struct Hosted {
     devices: OwnedFd,
     /// The host's thread that runs the instance.
     thread: i32,
-    meter: Meter,
     inputs: Vec<Input>,
     /// Of the last call.
     number: u32,
@@ -101,6 +99,8 @@ impl Hosted {
         let in_words = |error: io::Error| format!("its host process does not start: {error}");
         let channel = Arc::new(Channel::create(layout.total, layout.front()).map_err(in_words)?);
         let (devices, far) = socket::pair().map_err(in_words)?;
+        let library = sealed(&component.library)
+            .map_err(|error| format!("{}: {error}", component.library.display()))?;
         let process = hosts
             .host(component.group, component.stands_by)
             .map_err(in_words)?;
@@ -116,11 +116,10 @@ impl Hosted {
         };
         let executor = Arc::default();
         process
-            .run(&setup, &channel, far.as_fd(), &executor)
+            .run(&setup, &channel, far.as_fd(), library.as_fd(), &executor)
             .map_err(in_words)?;
         drop(far);
         let thread = wait_until_loaded(&channel, &layout, &process)?;
-        let meter = Meter::new(process.number(), thread, component.group.is_none());
         Ok(Self {
             channel,
             inputs: inputs(&layout),
@@ -130,7 +129,6 @@ impl Hosted {
             executor,
             devices,
             thread,
-            meter,
             number: 0,
             injection: None,
             forgets_allocations: false,
@@ -262,7 +260,7 @@ impl Hosted {
         loss: &Loss,
         services: &mut Services,
     ) -> Ending {
-        let mut patience = Patience::new(limit.duration(), self.meter);
+        let mut patience = Patience::new(limit.duration(), self.thread);
         loop {
             let hurry = loss.watch().hurry_limit().duration();
             match self.channel.wait_for_host(patience.next_look(hurry)) {

@@ -4,14 +4,11 @@
 
 use std::time::{Duration, Instant};
 
-use super::meter::Meter;
-
 /// How often a wait looks at the host and whether somebody is in a hurry. Half of the shortest
 /// period of monitors.
 const LOOK: Duration = Duration::from_millis(2);
 
-/// The first look is after this part of the limit where it is not known what the thread had run
-/// before.
+/// The first look is after this part of the limit: what the thread has run before it is not known.
 const FIRST_LOOK: u32 = 8;
 
 /// A host breaks a callback off within a fraction of this, in the component's own code; what is
@@ -26,7 +23,7 @@ const SHORTEST: Duration = Duration::from_micros(50);
 pub(super) struct Patience {
     /// Zero: none.
     limit: Duration,
-    meter: Meter,
+    thread: i32,
     began: Instant,
     /// Since when the container itself is at work.
     paused: Option<Instant>,
@@ -46,19 +43,15 @@ struct Account {
 }
 
 impl Patience {
-    /// A wait that begins now, for a thread of a host.
-    pub(super) fn new(limit: Duration, meter: Meter) -> Self {
-        let ran = meter.at_begin();
+    /// A wait that begins now, for this thread of a host.
+    pub(super) fn new(limit: Duration, thread: i32) -> Self {
         Self {
             limit,
-            meter,
+            thread,
             began: Instant::now(),
             paused: None,
             excused: Duration::ZERO,
-            account: Account {
-                spent: Duration::ZERO,
-                last: ran.map(|ran| (Duration::ZERO, ran)),
-            },
+            account: Account::default(),
             grace: None,
         }
     }
@@ -100,8 +93,8 @@ impl Patience {
     /// Looks at the host; whether the callback is to be broken off now.
     pub(super) fn exceeded(&mut self, hurry: Duration) -> bool {
         let passed = self.passed();
-        let meter = self.meter;
-        self.account.look(passed, meter.ran(), || meter.is_ready());
+        let (ran, is_ready) = observe(self.thread);
+        self.account.look(passed, ran, is_ready);
         let limit = self.limit(hurry);
         self.grace.is_none() && limit.is_some_and(|limit| self.account.spent >= limit)
     }
@@ -128,22 +121,34 @@ impl Patience {
 
 impl Account {
     /// The thread has run for `ran` since it began, and runs or waits for a processor now, or not.
-    fn look(&mut self, passed: Duration, ran: Duration, is_ready: impl Fn() -> bool) {
+    fn look(&mut self, passed: Duration, ran: Duration, is_ready: bool) {
         let (passed_before, ran_before) = match self.last {
             Some(last) => last,
             // It may have run, or waited for a processor: nobody knows.
-            None if is_ready() => (passed, ran),
+            None if is_ready => (passed, ran),
             None => (Duration::ZERO, ran),
         };
         self.last = Some((passed, ran));
         let passed = passed.saturating_sub(passed_before);
         let ran = ran.saturating_sub(ran_before).min(passed);
-        self.spent += if ran >= passed / 2 || is_ready() {
+        self.spent += if ran >= passed / 2 || is_ready {
             ran
         } else {
             passed
         };
     }
+}
+
+/// How long a thread has run since it began, and whether it runs or waits for a processor. What
+/// cannot be read counts as asleep.
+fn observe(thread: i32) -> (Duration, bool) {
+    let read = |name: &str| std::fs::read_to_string(format!("/proc/{thread}/{name}"));
+    let times = read("schedstat").unwrap_or_default();
+    let ran = times.split(' ').next().and_then(|time| time.parse().ok());
+    let state = read("stat").unwrap_or_default();
+    let state = state.rsplit(')').next().map(str::trim_start);
+    let is_ready = state.is_some_and(|state| state.starts_with('R'));
+    (Duration::from_nanos(ran.unwrap_or_default()), is_ready)
 }
 
 #[cfg(test)]
@@ -166,9 +171,16 @@ mod tests {
         ] {
             let mut account = Account::default();
             for (passed, ran, is_ready) in looks {
-                account.look(ms(*passed), ms(*ran), || *is_ready);
+                account.look(ms(*passed), ms(*ran), *is_ready);
             }
             assert_eq!(account.spent, ms(spent), "{looks:?}");
         }
+    }
+
+    #[test]
+    fn the_own_thread_runs() {
+        let thread = rustix::thread::gettid().as_raw_nonzero().get();
+        assert!(observe(thread).1);
+        assert_eq!(observe(0), (Duration::ZERO, false));
     }
 }

@@ -133,6 +133,7 @@ impl HostProcess {
         setup: &Setup,
         channel: &Arc<Channel>,
         devices: BorrowedFd<'_>,
+        library: BorrowedFd<'_>,
         executor: &Arc<OnceLock<Arc<Wake>>>,
     ) -> io::Result<()> {
         self.life.tenants().push(Tenant {
@@ -140,7 +141,11 @@ impl HostProcess {
             executor: Arc::clone(executor),
         });
         let message = serde_json::to_vec(setup)?;
-        socket::send(self.control.as_fd(), &message, &[channel.memory(), devices])?;
+        socket::send(
+            self.control.as_fd(),
+            &message,
+            &[channel.memory(), devices, library],
+        )?;
         if self.life.status.get().is_some() {
             channel.mark_dead();
         }
@@ -166,14 +171,9 @@ impl HostProcess {
         self.ending()
     }
 
-    /// Its number.
-    pub(super) fn number(&self) -> i32 {
-        self.life.process.as_raw_nonzero().get()
-    }
-
     /// Whether a thread of this number is its.
     pub(super) fn has_thread(&self, thread: i32) -> bool {
-        let process = self.number();
+        let process = self.life.process.as_raw_nonzero();
         Path::new(&format!("/proc/{process}/task/{thread}")).exists()
     }
 

@@ -18,7 +18,7 @@ use super::socket;
 use crate::clock::nanoseconds;
 use crate::guard::loss::{Loss, losses, wait_for_loss};
 use crate::guard::{CallLimit, Callback, Ending, Guarded, ServiceCall, Trap, interrupt};
-use crate::library::LoadedLibrary;
+use crate::library::{LoadedLibrary, hand_over};
 use crate::scheduling::{be_ordinary, outrank_components};
 use crate::watchdog::TICK;
 
@@ -67,9 +67,10 @@ fn serve() -> std::io::Result<()> {
     let mut is_bounded = false;
     while let Some((message, files)) = socket::receive(control.as_fd())? {
         let setup: Setup = serde_json::from_slice(&message)?;
-        let Ok([memory, devices]) = <[OwnedFd; 2]>::try_from(files) else {
+        let Ok([memory, devices, library]) = <[OwnedFd; 3]>::try_from(files) else {
             return Err(std::io::ErrorKind::InvalidData.into());
         };
+        hand_over(&setup.library, library.into())?;
         if !is_bounded {
             limits::bound(&setup.limits)?;
             is_bounded = true;
@@ -157,6 +158,9 @@ fn run(post: &Arc<Post>, devices: OwnedFd) {
         };
         channel.hand_to_container();
         if let Some(scene) = scene {
+            // It takes milliseconds, and the instance is never called again: the successor's
+            // executor must not wait for it.
+            let _as_it_was = be_ordinary();
             leave_backtrace(post, &scene.backtrace());
         }
     }

@@ -14,7 +14,7 @@ use rustix::net::{
 const LONGEST_MESSAGE: usize = 160 * 1024;
 
 /// Files that one message may carry.
-const MOST_FILES: usize = 2;
+const MOST_FILES: usize = 3;
 
 /// Two ends of a line for whole messages; neither stays open in a process that is started.
 pub(super) fn pair() -> io::Result<(OwnedFd, OwnedFd)> {

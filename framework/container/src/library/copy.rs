@@ -14,7 +14,7 @@ use std::os::unix::fs::{FileExt as _, MetadataExt as _};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use object::{Object as _, ObjectSegment as _};
+use object::{Object as _, ObjectSegment as _, ReadCache};
 use rustix::fs::{MemfdFlags, SealFlags};
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 
@@ -25,11 +25,14 @@ const PAGE_BYTES: u64 = 4096;
 /// All originals, and which of them each copy was made from, by the address of the copy. Nothing is
 /// ever taken out: no library is unloaded.
 static STORE: Mutex<Store> = Mutex::new(Store {
+    handed_over: BTreeMap::new(),
     originals: Vec::new(),
     copies: BTreeMap::new(),
 });
 
 struct Store {
+    /// By path: those that another process has read.
+    handed_over: BTreeMap<PathBuf, Arc<Original>>,
     originals: Vec<Arc<Original>>,
     copies: BTreeMap<PathBuf, Arc<Original>>,
 }
@@ -50,6 +53,18 @@ struct Identity {
     number: u64,
     size: u64,
     changed: (i64, i64),
+}
+
+impl Identity {
+    fn of(file: &File) -> io::Result<Self> {
+        let metadata = file.metadata()?;
+        Ok(Self {
+            device: metadata.dev(),
+            number: metadata.ino(),
+            size: metadata.size(),
+            changed: (metadata.ctime(), metadata.ctime_nsec()),
+        })
+    }
 }
 
 /// A copy for the loader of the library at `path`, sealed, and the address by which the loader
@@ -81,16 +96,36 @@ pub(crate) fn whole(file: &Path) -> PathBuf {
     }
 }
 
+/// The whole library at `path` as it is now, sealed, for a process that shall load it, too.
+///
+/// # Errors
+/// If the file cannot be read or the machine has no room.
+pub(crate) fn sealed(path: &Path) -> io::Result<File> {
+    original(path)?.whole.try_clone()
+}
+
+/// From now on the library at `path` is this one, which another process has read and sealed.
+///
+/// # Errors
+/// If it cannot be read.
+pub(crate) fn hand_over(path: &Path, whole: File) -> io::Result<()> {
+    let original = Arc::new(Original {
+        identity: Identity::of(&whole)?,
+        size: whole.metadata()?.len(),
+        mapped: mapped(&whole)?,
+        whole,
+    });
+    store().handed_over.insert(path.to_owned(), original);
+    Ok(())
+}
+
 /// Reads a file, if it was not read before or has changed since.
 fn original(path: &Path) -> io::Result<Arc<Original>> {
+    if let Some(original) = store().handed_over.get(path) {
+        return Ok(Arc::clone(original));
+    }
     let mut file = File::open(path)?;
-    let metadata = file.metadata()?;
-    let identity = Identity {
-        device: metadata.dev(),
-        number: metadata.ino(),
-        size: metadata.size(),
-        changed: (metadata.ctime(), metadata.ctime_nsec()),
-    };
+    let identity = Identity::of(&file)?;
     let known = |one: &&Arc<Original>| one.identity == identity;
     if let Some(known) = store().originals.iter().find(known) {
         return Ok(Arc::clone(known));
@@ -102,9 +137,9 @@ fn original(path: &Path) -> io::Result<Arc<Original>> {
     seal(&whole)?;
     let original = Arc::new(Original {
         identity,
-        whole,
         size: content.len() as u64,
-        mapped: mapped(&content),
+        mapped: mapped(&whole)?,
+        whole,
     });
     store().originals.push(Arc::clone(&original));
     Ok(original)
@@ -112,10 +147,14 @@ fn original(path: &Path) -> io::Result<Arc<Original>> {
 
 /// The pages of a file that the loader maps, and the first one; of what is no library, all: the
 /// loader says best what it is.
-fn mapped(content: &[u8]) -> Vec<Range<u64>> {
-    let size = content.len() as u64;
-    let Ok(library) = object::File::parse(content) else {
-        return std::iter::once(0..size).collect();
+///
+/// # Errors
+/// If the file's size cannot be told.
+fn mapped(file: &File) -> io::Result<Vec<Range<u64>>> {
+    let size = file.metadata()?.len();
+    let content = ReadCache::new(file);
+    let Ok(library) = object::File::parse(&content) else {
+        return Ok(std::iter::once(0..size).collect());
     };
     let segments = library.segments().map(|segment| segment.file_range());
     let header = std::iter::once((0, PAGE_BYTES));
@@ -124,7 +163,7 @@ fn mapped(content: &[u8]) -> Vec<Range<u64>> {
         let end = end.next_multiple_of(PAGE_BYTES).min(size);
         (start / PAGE_BYTES * PAGE_BYTES).min(end)..end
     });
-    ranges.collect()
+    Ok(ranges.collect())
 }
 
 fn memory_file(path: &Path) -> io::Result<File> {
@@ -183,7 +222,8 @@ mod tests {
         std::fs::write(&path, &content).expect("a file");
         let (copied, address) = copy(&path).expect("a copy");
         assert_eq!(copied.metadata().expect("open").len(), content.len() as u64);
-        for range in mapped(&content) {
+        let ranges = mapped(&copied).expect("readable");
+        for range in ranges {
             let expected = &content[range.start as usize..range.end as usize];
             let mut bytes = vec![0; expected.len()];
             copied.read_exact_at(&mut bytes, range.start).expect("read");
@@ -192,6 +232,10 @@ mod tests {
         let original = std::fs::read(whole(&address)).expect("the original");
         assert!(original == content, "the original has all");
         assert!(copied.write_all_at(&[0], 0).is_err(), "it is sealed");
+        let elsewhere = Path::new("/somewhere/handed_over.so");
+        hand_over(elsewhere, sealed(&path).expect("sealed")).expect("handed over");
+        let (_copied, address) = copy(elsewhere).expect("a copy of what was handed over");
+        assert!(std::fs::read(whole(&address)).expect("whole") == content);
         let other = Path::new("/somewhere/else.so");
         assert_eq!(whole(other), other);
     }
@@ -217,12 +261,16 @@ mod tests {
 
     #[test]
     fn names_and_places_are_not_copied() {
-        let content = own_program();
-        let copied: u64 = mapped(&content).iter().map(|it| it.end - it.start).sum();
-        assert!(copied < content.len() as u64 / 2, "{copied} bytes");
-        assert_eq!(
-            mapped(b"no library"),
-            std::iter::once(0..10).collect::<Vec<_>>()
-        );
+        let path = std::env::current_exe().expect("a running test knows its file");
+        let file = File::open(path).expect("and can open it");
+        let ranges = mapped(&file).expect("and read it");
+        let copied: u64 = ranges.iter().map(|it| it.end - it.start).sum();
+        let size = file.metadata().expect("it is there").len();
+        assert!(copied < size / 2, "{copied} bytes");
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("text");
+        std::fs::write(&path, "no library").expect("a file");
+        let all = mapped(&File::open(path).expect("open")).expect("readable");
+        assert_eq!(all, std::iter::once(0..10).collect::<Vec<_>>());
     }
 }
