@@ -48,11 +48,17 @@ pub fn outrank(priority: u8) {
     wake_in_time();
 }
 
-/// Puts the calling thread behind everybody else, whatever it was started by. Refused nowhere: a
-/// thread may always give way.
-pub fn give_way() {
+/// Puts the calling thread behind all executors. Where all of these are to have real-time priority,
+/// and that is permitted, any ordinary thread is; else it gives way to everybody, which is refused
+/// nowhere. Who prepares standbys on a machine that is kept busy by others comes to nothing if it
+/// gives way to these without need.
+pub fn stay_behind(all_are_real_time: bool) {
+    let real_time = RealtimeThreadSchedulePolicy::Fifo;
+    let is_behind = all_are_real_time && be_real_time(real_time, LEAST_REAL_TIME).is_ok();
     let _as_it_was = be_ordinary();
-    let _as_it_was = rustix::process::setpriority_process(None, NICEST);
+    if !is_behind {
+        let _as_it_was = rustix::process::setpriority_process(None, NICEST);
+    }
 }
 
 /// Asks for wake-ups at the time that was asked for: by default the kernel may be 50 us late to

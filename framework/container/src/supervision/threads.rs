@@ -34,8 +34,8 @@ pub struct ManagerThreads {
 impl ManagerThreads {
     /// Starts all three. `above`: the highest priority of real-time executors, if there are any:
     /// the thread that looks after time goes before them, because what it holds they need in a
-    /// recovery, and because their own work is what it watches. A parent that supervises hears from
-    /// that thread.
+    /// recovery, and because their own work is what it watches. `all_are_real_time`: there are no
+    /// other executors. A parent that supervises hears from the thread that looks after time.
     ///
     /// # Errors
     /// If the system refuses a thread.
@@ -45,6 +45,7 @@ impl ManagerThreads {
         crew: &Arc<Crew>,
         wanted: Receiver<usize>,
         above: Option<u8>,
+        all_are_real_time: bool,
         supervised: Option<Arc<Supervised>>,
     ) -> io::Result<()> {
         let (stopping, clocked) = (Arc::clone(&self.stopping), Arc::clone(supervisor));
@@ -69,7 +70,7 @@ impl ManagerThreads {
             at: None,
         };
         let lane = Lane::new("standbys", Box::new(work));
-        crew.start(&lane, scheduling::give_way)?;
+        crew.start(&lane, move || scheduling::stay_behind(all_are_real_time))?;
         self.preparation = Some(lane);
         Ok(())
     }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use crossbeam::channel::Receiver;
 use fault_manager::Observation;
 use system_model::life_cycle::Operation;
-use system_model::specification::SchedulingPolicy;
+use system_model::specification::{ExecutionKind, SchedulingPolicy};
 
 use super::agenda::{Agenda, Failure, Step};
 use super::real_time::{self, WorldThread};
@@ -173,11 +173,16 @@ impl System {
             }
             ClockKind::Real => {
                 let supervised = self.options.supervised.clone();
-                let real_time = executors.iter();
-                let real_time = real_time.filter(|one| one.policy != SchedulingPolicy::Other);
+                let is_real_time = |one: &&Executor| one.policy != SchedulingPolicy::Other;
+                let real_time = executors.iter().filter(is_real_time);
                 let above = real_time.map(|one| one.priority).max();
+                let has_thread = |one: &&Executor| one.kind != ExecutionKind::Passive;
+                let all = executors
+                    .iter()
+                    .filter(has_thread)
+                    .all(|one| is_real_time(&one));
                 let threads = &mut self.manager_threads;
-                threads.start(&self.supervisor, &self.crew, wanted, above, supervised)?;
+                threads.start(&self.supervisor, &self.crew, wanted, above, all, supervised)?;
                 if above.is_some() {
                     self.lock_memory();
                 }

@@ -87,8 +87,8 @@ pub struct RecoveryArguments {
 const QUICK_N: u32 = 10;
 const QUICK_LOAD_PERCENT: u8 = 10;
 
-/// Of each operation of the floor: enough for a 99.9th percentile.
-const FLOOR_N: u32 = 1000;
+/// Of each operation of the floor: enough for a 99th percentile.
+const FLOOR_N: u32 = 500;
 
 /// Runs the study. The exit code is 2 if something cannot be started, measured, read or written; what
 /// was measured is written all the same.

@@ -140,24 +140,27 @@ pub(super) struct Group {
 impl Group {
     /// Cycles, which are milliseconds, from a fault that is handled so to the next one, of another
     /// component. Handling takes a tenth of one; what is left is other work that disturbs the caches,
-    /// and time for another standby. A library that is loaded on the way takes most of one more, and
-    /// an emergency stop is looked at before it is cleared. A host takes several to be started, by
-    /// whoever has no other work.
+    /// and time for another standby, which is prepared by whoever has no other work: of an instance
+    /// behind the guard it takes about one, of a host several, and more beside a load. An emergency
+    /// stop is looked at before it is cleared.
     pub(super) fn cycles(&self, handling: Handling) -> u64 {
-        let in_place = self.fault.leaves_instance() && handling.secondary_preload().is_none();
+        let has_secondaries = handling.secondary_preload().is_some();
+        let uses_standby = !has_secondaries && !self.fault.leaves_instance();
         match (self.tier, handling) {
-            (Tier::Process, _) if !in_place => 10,
+            (Tier::Process, Handling::SecondaryCold) => 10,
+            (Tier::Process, _) if uses_standby => 10,
             (_, Handling::SecondaryCold | Handling::EmergencyStop) => 3,
+            (Tier::Guarded, _) if uses_standby => 4,
             _ => 2,
         }
     }
 }
 
 /// The rows; `all` of them, or without those that differ from another one in nothing but detection:
-/// what it takes to put a secondary in the place of an instance depends on how far it was prepared,
-/// and on whether the old one is dead (trap) or has to be given up (error return). A host is started
-/// for each fault that ends one, which takes many times what is measured; so of these rows there is
-/// one for each fault, and more only of hosts that are killed.
+/// what it takes to recover depends on how far who takes over was prepared, on whether there is a
+/// checkpoint, and on whether the old one is dead (trap) or has to be given up (error return). A host
+/// is started for each fault that ends one, which takes many times what is measured; so of these rows
+/// there is one for each fault, and more only of hosts that are killed.
 ///
 /// An emergency stop stops everything, so it has an application of its own; how it comes about does
 /// not matter to it, nor does the tier, so it is measured for a component that dies and for bad data.
@@ -191,13 +194,14 @@ fn recoveries(tier: Tier, fault: Fault, all: bool) -> Group {
 
 /// Whether a row differs from others in more than detection.
 fn is_telling(tier: Tier, fault: Fault, handling: Handling) -> bool {
-    use Handling::{Reset, ResetCheckpoint, SecondaryCold, SecondaryLoaded, StandbyWarm};
+    use Handling::{Reset, ResetCheckpoint, SecondaryLoaded, SecondaryWarm, StandbyWarm};
     match (tier, fault) {
         (Tier::Guarded, Fault::Trap | Fault::ErrorReturn) => true,
-        (Tier::Guarded, _) => !matches!(handling, SecondaryCold | SecondaryLoaded),
+        (Tier::Guarded, Fault::OutOfRange) => matches!(handling, ResetCheckpoint | SecondaryWarm),
+        (Tier::Guarded, _) => matches!(handling, ResetCheckpoint | StandbyWarm),
         // A reset has a second copy that is loaded, as this secondary is.
-        (Tier::Process, Fault::HostKilled) => handling != SecondaryLoaded,
+        (Tier::Process, Fault::HostKilled) => handling != SecondaryLoaded && handling != Reset,
         (Tier::Process, Fault::Trap | Fault::Panic | Fault::Hang) => handling == StandbyWarm,
-        (Tier::Process, _) => matches!(handling, Reset | ResetCheckpoint),
+        (Tier::Process, _) => handling == ResetCheckpoint,
     }
 }
