@@ -88,7 +88,7 @@ const QUICK_N: u32 = 10;
 const QUICK_LOAD_PERCENT: u8 = 10;
 
 /// Of each operation of the floor: enough for a 99th percentile.
-const FLOOR_N: u32 = 500;
+const FLOOR_N: u32 = 300;
 
 /// Runs the study. The exit code is 2 if something cannot be started, measured, read or written; what
 /// was measured is written all the same.
@@ -124,11 +124,18 @@ fn measure(arguments: &RecoveryArguments) -> io::Result<Results> {
              as root, or with CAP_SYS_NICE"
         );
     }
-    let work: Vec<(Group, Vec<Batch>)> = groups(arguments.all)
-        .into_iter()
-        .map(|group| (group.clone(), batches(&group, n_of(&group))))
-        .collect();
-    let per_load: usize = work.iter().map(|(_, batches)| batches.len()).sum();
+    let work_beside = |load_percent| -> Vec<(Group, Vec<Batch>)> {
+        let groups = groups(arguments.all).into_iter();
+        let planned = groups.map(|group| {
+            let batches = batches(&group, n_of(&group), load_percent);
+            (group, batches)
+        });
+        planned.collect()
+    };
+    let per_load: usize = work_beside(0)
+        .iter()
+        .map(|(_, batches)| batches.len())
+        .sum();
     let progress = Progress::new(loads.len() * (per_load + 1));
     let mut results = Results::of(machine);
     for load_percent in loads {
@@ -138,7 +145,7 @@ fn measure(arguments: &RecoveryArguments) -> io::Result<Results> {
         progress.advance();
         let of_load = |operation| FloorRow::new(operation, load_percent);
         results.floor.extend(floor.into_iter().filter_map(of_load));
-        for (group, batches) in &work {
+        for (group, batches) in &work_beside(load_percent) {
             let mut measured = Vec::new();
             for batch in batches {
                 let (tier, fault) = (group.tier.name(), group.fault.name());

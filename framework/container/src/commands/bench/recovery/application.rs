@@ -45,6 +45,8 @@ pub(super) const INJECTIONS: &str = "injections.xml";
 pub(super) struct Batch {
     /// The rows.
     pub(super) group: Group,
+    /// Of all processors, which tells how soon there is another standby.
+    pub(super) load_percent: u8,
     /// Components under test of each row: between two faults of one the others have theirs.
     pub(super) chains: u32,
     /// Faults of each component.
@@ -157,9 +159,13 @@ impl Batch {
         )
     }
 
+    fn cycles(&self, handling: Handling) -> u64 {
+        self.group.cycles(handling, self.load_percent)
+    }
+
     /// Faults come one after the other, component by component, round and round.
     fn injections(&self) -> String {
-        let every: u64 = self.relays().map(|(_, it)| self.group.cycles(it)).sum();
+        let every: u64 = self.relays().map(|(_, it)| self.cycles(it)).sum();
         let repeat = self.faults;
         let killed = format!(
             "fault=\"slow\" duration=\"{KILLED_CALLBACK_MS}ms\" for=\"{KILLED_WINDOW_US}us\""
@@ -184,7 +190,7 @@ impl Batch {
                 "<inject at_cycle=\"{first}\" every_cycles=\"{every}\" repeat=\"{repeat}\" \
                  component=\"{relay}\" {what}/>"
             );
-            first += self.group.cycles(handling);
+            first += self.cycles(handling);
         }
         format!("<fault_injections application=\"recovery\">\n{injections}</fault_injections>\n")
     }
@@ -246,7 +252,7 @@ mod tests {
     fn every_application_is_read_with_its_rules_and_injections() {
         for group in groups(true) {
             let folder = tempfile::tempdir().expect("a folder");
-            let batch = batches(&group, 7).remove(0);
+            let batch = batches(&group, 7, 10).remove(0);
             batch.write(folder.path()).expect("files");
             let application = load(folder.path()).unwrap_or_else(|error| panic!("{error}"));
             let relays = batch.relays().count();

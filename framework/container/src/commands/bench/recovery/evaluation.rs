@@ -162,6 +162,7 @@ mod tests {
 
     fn batch(fault: Fault, handling: Handling) -> Batch {
         Batch {
+            load_percent: 10,
             group: Group {
                 tier: Tier::Guarded,
                 fault,

@@ -19,8 +19,8 @@ const PROCESS_FAULTS: u32 = 100;
 /// Emergency stops in one process.
 const STOPS: u32 = 500;
 
-/// Processes that together measure `n` faults of each row of a group.
-pub(super) fn batches(group: &Group, n: u32) -> Vec<Batch> {
+/// Processes that together measure `n` faults of each row of a group beside a load.
+pub(super) fn batches(group: &Group, n: u32, load_percent: u8) -> Vec<Batch> {
     let stops = group.handlings.contains(&Handling::EmergencyStop);
     let (chains, most) = match group.tier {
         _ if stops => (1, STOPS),
@@ -34,6 +34,7 @@ pub(super) fn batches(group: &Group, n: u32) -> Vec<Batch> {
         // The first of a component's emergencies may be a reset that is within its budget.
         let in_vain = u32::from(stops);
         batches.push(Batch {
+            load_percent,
             group: group.clone(),
             chains,
             faults: faults + in_vain,
@@ -52,7 +53,7 @@ mod tests {
     fn every_row_gets_its_faults_and_no_process_too_many() {
         for group in groups(true) {
             for n in [1, 19, 20, 200, 201, 1000, 5000] {
-                let batches = batches(&group, n);
+                let batches = batches(&group, n, 80);
                 let faults: u32 = batches.iter().map(|it| it.chains * it.faults).sum();
                 assert!(faults >= n, "{group:?}, {n}: {faults}");
                 assert!(faults <= n + CHAINS + 10, "{group:?}, {n}: {faults}");

@@ -141,25 +141,35 @@ impl Group {
     /// Cycles, which are milliseconds, from a fault that is handled so to the next one, of another
     /// component. Handling takes a tenth of one; what is left is other work that disturbs the caches,
     /// and time for another standby, which is prepared by whoever has no other work: of an instance
-    /// behind the guard it takes about one, of a host several, and more beside a load. An emergency
-    /// stop is looked at before it is cleared.
-    pub(super) fn cycles(&self, handling: Handling) -> u64 {
+    /// behind the guard that takes about one, of a host several, and more beside a load. An emergency
+    /// stop is looked at before it is cleared, and a reset for bad data ends in the next cycle.
+    pub(super) fn cycles(&self, handling: Handling, load_percent: u8) -> u64 {
         let has_secondaries = handling.secondary_preload().is_some();
         let uses_standby = !has_secondaries && !self.fault.leaves_instance();
+        let kills_host = self.fault == Fault::HostKilled;
         match (self.tier, handling) {
+            (_, Handling::EmergencyStop) => 3,
+            (Tier::Process, _) if uses_standby && kills_host && load_percent > 60 => 16,
             (Tier::Process, Handling::SecondaryCold) => 10,
-            (Tier::Process, _) if uses_standby => 10,
-            (_, Handling::SecondaryCold | Handling::EmergencyStop) => 3,
-            (Tier::Guarded, _) if uses_standby => 4,
-            _ => 2,
+            (Tier::Process, _) if uses_standby && kills_host => 10,
+            (Tier::Process, _) if uses_standby => 8,
+            (Tier::Guarded, Handling::SecondaryCold) => 3,
+            (Tier::Guarded, _) if uses_standby => match load_percent {
+                0..=40 => 2,
+                41..=60 => 3,
+                _ => 4,
+            },
+            _ if self.fault == Fault::OutOfRange => 2,
+            (Tier::Process, _) => 2,
+            (Tier::Guarded, _) => 1,
         }
     }
 }
 
 /// The rows; `all` of them, or without those that differ from another one in nothing but detection:
 /// what it takes to recover depends on how far who takes over was prepared, on whether there is a
-/// checkpoint, and on whether the old one is dead (trap) or has to be given up (error return). A host
-/// is started for each fault that ends one, which takes many times what is measured; so of these rows
+/// checkpoint, and, of prepared ones, on whether the old one is dead (trap) or has to be given up
+/// (error return). A host is started for each fault that ends one, which takes many times what is measured; so of these rows
 /// there is one for each fault, and more only of hosts that are killed.
 ///
 /// An emergency stop stops everything, so it has an application of its own; how it comes about does
@@ -194,11 +204,15 @@ fn recoveries(tier: Tier, fault: Fault, all: bool) -> Group {
 
 /// Whether a row differs from others in more than detection.
 fn is_telling(tier: Tier, fault: Fault, handling: Handling) -> bool {
-    use Handling::{Reset, ResetCheckpoint, SecondaryLoaded, SecondaryWarm, StandbyWarm};
+    use Handling::{
+        Reset, ResetCheckpoint, SecondaryCold, SecondaryLoaded, SecondaryWarm, StandbyWarm,
+    };
     match (tier, fault) {
-        (Tier::Guarded, Fault::Trap | Fault::ErrorReturn) => true,
+        (Tier::Guarded, Fault::Trap) => true,
+        (Tier::Guarded, Fault::ErrorReturn) => !matches!(handling, Reset | SecondaryCold),
         (Tier::Guarded, Fault::OutOfRange) => matches!(handling, ResetCheckpoint | SecondaryWarm),
-        (Tier::Guarded, _) => matches!(handling, ResetCheckpoint | StandbyWarm),
+        (Tier::Guarded, Fault::Hang) => matches!(handling, ResetCheckpoint | StandbyWarm),
+        (Tier::Guarded, _) => handling == StandbyWarm,
         // A reset has a second copy that is loaded, as this secondary is.
         (Tier::Process, Fault::HostKilled) => handling != SecondaryLoaded && handling != Reset,
         (Tier::Process, Fault::Trap | Fault::Panic | Fault::Hang) => handling == StandbyWarm,
