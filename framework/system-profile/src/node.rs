@@ -140,13 +140,24 @@ impl<'a> Node<'a> {
         Some(value)
     }
 
-    /// The value of an attribute, if it exists and is not empty.
+    /// The value of an attribute, if it exists and is not empty; one that is empty is warned of.
     pub fn attribute(&self, name: &'static str) -> Option<Value<'a>> {
+        let value = self.written_attribute(name)?;
+        if value.is_empty() {
+            self.warning(
+                format!("{} is empty", value.owner()),
+                Some("it is not read; write a value, or remove it".into()),
+            );
+            return None;
+        }
+        Some(value)
+    }
+
+    /// The value of an attribute, which may be empty.
+    fn written_attribute(&self, name: &'static str) -> Option<Value<'a>> {
         self.attributes_asked.borrow_mut().push(name);
-        let attributes = &self.element.attributes;
-        let found = attributes
-            .iter()
-            .find(|attribute| attribute.name == name && !attribute.value.trim().is_empty())?;
+        let mut attributes = self.element.attributes.iter();
+        let found = attributes.find(|attribute| attribute.name == name)?;
         Some(Value::new(
             found.value.trim(),
             found.value_span.clone(),
@@ -157,7 +168,8 @@ impl<'a> Node<'a> {
 
     /// The value of an attribute; an error if it is missing or empty.
     pub fn required_attribute(&self, name: &'static str) -> Option<Value<'a>> {
-        let found = self.attribute(name);
+        let found = self.written_attribute(name);
+        let found = found.filter(|value| !value.is_empty());
         if found.is_none() {
             self.error(
                 format!("<{}> has no {name}", quoted(self.name())),

@@ -4,15 +4,19 @@ use system_model::profile::{
     Channel, Deployment, LoadPolicy, Logger, NodeAddress, Setting, SystemProfile,
 };
 
-use super::FAULT_TOLERANCE;
 use super::header::{attribute, required_attribute};
 use crate::node::Node;
 use crate::value::Value;
 
 /// Reads a system file.
 pub(super) fn read(root: &Node<'_>) -> SystemProfile {
-    root.pass_over(&["name", "description", "copyright", "applications"]);
-    root.pass_over(&FAULT_TOLERANCE);
+    root.pass_over(&[
+        "name",
+        "description",
+        "copyright",
+        "applications",
+        "dependency",
+    ]);
     let mut profile = SystemProfile {
         file: root.place().file,
         ..SystemProfile::default()
