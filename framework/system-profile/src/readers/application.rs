@@ -83,6 +83,7 @@ fn connection(node: &Node<'_>) -> Option<PortConnection> {
     let kind = ports::kind(node, node.attribute("port_type"));
     let (source, target) = (node.required_child("source"), node.required_child("target"));
     node.pass_over(&["io_type"]);
+    node.pass_over_attributes(&["io_type"]);
     node.finish();
     let (source, target) = (end(&source?), end(&target?));
     Some(PortConnection {

@@ -121,7 +121,7 @@ fn component_manager(node: &Node<'_>, profile: &mut SystemProfile) {
             value.map_or(Some(default), |value| value.number())
         };
         profile.nonblocking_workers = count("min", 5).zip(count("max", 10));
-        workers.pass_over(&["scalable"]);
+        workers.pass_over_attributes(&["scalable"]);
         workers.finish();
     }
     if let Some(connector) = node.child("io_connector") {
