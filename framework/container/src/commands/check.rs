@@ -21,6 +21,7 @@ const CANNOT_READ: u8 = 2;
 
 /// What `steadfast check` is asked to do.
 #[derive(Debug, Args)]
+#[command(after_long_help = super::manual::CHECK)]
 pub struct CheckArguments {
     /// XML files to check; a folder stands for all XML files in it
     #[arg(value_name = "FILE", required = true)]

@@ -43,15 +43,7 @@ const LIBRARY_PATH_VARIABLE: &str = "STEADFAST_LIBRARY_PATH";
 
 /// What `steadfast run` is asked to do.
 #[derive(Debug, Args)]
-#[command(after_help = "Exit codes:
-  0  the run ended: target reached, duration elapsed, or stopped by Ctrl-C
-  1  a profile or world file has problems
-  2  a file cannot be read or written
-  3  a library is missing, no component, or for another container
-  4  ports or connections do not fit the libraries
-  5  a component refused to be initialised or started, or hung in it
-  6  the system refused threads or memory
-  7  --supervised: the container failed more often than --restarts allows")]
+#[command(after_long_help = super::manual::RUN)]
 pub struct RunArguments {
     /// Application profiles (`package_profile` or `application_profile`), run in one container
     #[arg(required = true, value_name = "APPLICATION.xml")]

@@ -6,15 +6,11 @@ use std::path::Path;
 use container::assembly::AssemblyProblem;
 use container::system::StartError;
 
-/// Exit codes of `run`, by kind; the manual of the command lists them.
+/// Exit codes of `run`, by kind.
 pub(in crate::commands) mod exit_code {
-    pub const ENDED: u8 = 0;
-    pub const PROFILE: u8 = 1;
-    pub const FILE: u8 = 2;
-    pub const LIBRARY: u8 = 3;
-    pub const CONNECTION: u8 = 4;
-    pub const COMPONENT: u8 = 5;
-    pub const SYSTEM: u8 = 6;
+    pub use crate::commands::exit_code::{
+        COMPONENT, CONNECTION, DONE as ENDED, FILE, LIBRARY, REFUSED as PROFILE, SYSTEM, USAGE,
+    };
 }
 
 /// Why there is nothing (more) to run: exit code and text.

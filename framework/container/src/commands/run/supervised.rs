@@ -52,7 +52,7 @@ fn beat_limit(text: &str) -> Result<Duration, String> {
 pub(super) fn run(arguments: &RunArguments) -> Result<u8, Failed> {
     if arguments.clock == ClockArgument::Simulated {
         return Err(Failed {
-            code: exit_code::FILE,
+            code: exit_code::USAGE,
             text: "--supervised and --clock simulated do not go together: simulated time stands still \
                    while no container runs\n  help: leave one of them out"
                 .to_owned(),
