@@ -232,7 +232,10 @@ pub(super) fn simulation(path: &Path, seed: u64) -> Result<Simulation, Failed> {
     show(&outcome.problems);
     Simulation::new(&world, seed).map_err(|error| Failed {
         code: exit_code::PROFILE,
-        text: format!("{}: {error}", path.display()),
+        text: format!(
+            "{}: {error}\n  help: mend the world, or leave <world> out of the application",
+            path.display()
+        ),
     })
 }
 
@@ -244,7 +247,10 @@ fn watch_signals() -> Result<Arc<AtomicBool>, Failed> {
             .and_then(|_id| signal_hook::flag::register(signal, Arc::clone(&asked)))
             .map_err(|error| Failed {
                 code: exit_code::SYSTEM,
-                text: format!("signals cannot be watched: {error}"),
+                text: format!(
+                    "signals cannot be watched: {error}\n  help: see the limits of this user and \
+                     machine"
+                ),
             })?;
     }
     Ok(asked)

@@ -206,9 +206,7 @@ mod tests {
     #[test]
     fn every_word_is_filled_in() {
         for kind in [Kind::RustComponent, Kind::CComponent, Kind::Application] {
-            let files = files(kind, "low_pass", &sdk("/clone/sdk"))
-                .ok()
-                .expect("files");
+            let files = files(kind, "low_pass", &sdk("/clone/sdk")).expect("files");
             for (file, content) in files {
                 assert!(!file.contains('@'), "{file}");
                 let left = content.split('@').nth(1).filter(|word| {
@@ -224,7 +222,7 @@ mod tests {
     fn what_is_there_is_not_touched() {
         let folder = tempfile::tempdir().expect("a folder");
         let failed = write(Kind::CComponent, "a", &sdk("/clone/sdk"), folder.path());
-        assert_eq!(failed.err().expect("refused").code, exit_code::REFUSED);
+        assert_eq!(failed.expect_err("refused").code, exit_code::REFUSED);
         assert_eq!(
             std::fs::read_dir(folder.path()).expect("a folder").count(),
             0
@@ -236,7 +234,7 @@ mod tests {
         for path in ["/a\"b", "/a$b", "/a\nb"] {
             let refused = files(Kind::RustComponent, "a", &sdk(path));
             assert_eq!(
-                refused.err().expect("refused").code,
+                refused.expect_err("refused").code,
                 exit_code::FILE,
                 "{path}"
             );

@@ -83,9 +83,7 @@ mod tests {
     fn the_folder_given_is_a_clone_or_a_part_of_it() {
         let clone = clone();
         for part in ["", "framework", "framework/component-sdk"] {
-            let sdk = Sdk::find(Some(&clone.path().join(part)))
-                .ok()
-                .expect("an SDK");
+            let sdk = Sdk::find(Some(&clone.path().join(part))).expect("an SDK");
             assert!(sdk.rust.is_absolute() && sdk.rust.ends_with("framework/component-sdk"));
             assert!(sdk.include.join("component.h").is_file());
         }
@@ -95,7 +93,7 @@ mod tests {
     fn what_holds_no_sdk_is_said() {
         let empty = tempfile::tempdir().expect("a folder");
         for folder in [empty.path().to_owned(), empty.path().join("absent")] {
-            let failed = Sdk::find(Some(&folder)).err().expect("no SDK");
+            let failed = Sdk::find(Some(&folder)).expect_err("no SDK");
             assert_eq!(failed.code, exit_code::FILE);
             assert!(
                 failed.text.contains("help: name a clone"),

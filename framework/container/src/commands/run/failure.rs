@@ -14,6 +14,7 @@ pub(in crate::commands) mod exit_code {
 }
 
 /// Why there is nothing (more) to run: exit code and text.
+#[derive(Debug)]
 pub(in crate::commands) struct Failed {
     pub(in crate::commands) code: u8,
     pub(in crate::commands) text: String,
@@ -47,6 +48,8 @@ pub(super) fn unwritable(path: Option<&Path>, error: &io::Error) -> Failed {
     );
     Failed {
         code: exit_code::FILE,
-        text: format!("{name} cannot be written: {error}"),
+        text: format!(
+            "{name} cannot be written: {error}\n  help: name a file in a folder that you may write to"
+        ),
     }
 }

@@ -91,7 +91,10 @@ pub(super) fn join(arguments: &RunArguments) -> Result<Option<Arc<Supervised>>, 
     let joined = parent.map(Supervised::join).transpose();
     let joined = joined.map_err(|error| Failed {
         code: exit_code::SYSTEM,
-        text: format!("the parent that is to supervise cannot be reached: {error}"),
+        text: format!(
+            "the parent that is to supervise cannot be reached: {error}\n  help: start the run with \
+             --supervised, which makes a parent"
+        ),
     })?;
     Ok(joined.map(Arc::new))
 }
