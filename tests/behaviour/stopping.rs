@@ -84,7 +84,7 @@ fn wrong_arguments_are_explained() {
     ] {
         let mut command = Command::new(artifacts().join("steadfast"));
         let finished = Watched::spawn(command.args(arguments)).wait(REFUSAL_LIMIT);
-        assert_eq!(finished.code, Some(2), "{finished}");
+        assert_eq!(finished.code, Some(64), "{finished}");
         assert!(finished.stderr.contains("error"), "{finished}");
     }
 }

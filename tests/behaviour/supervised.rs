@@ -164,9 +164,9 @@ fn a_refused_start_is_not_repeated() {
     assert!(!outcome.finished().stderr.contains("restart"));
     let application = self::application();
     let outcome = application.run(&["--supervised", "--clock", "simulated"]);
-    outcome.was_refused(2, &["--supervised", "simulated"]);
+    outcome.was_refused(64, &["--supervised", "simulated"]);
     let outcome = application.run(&["--restarts", "3"]);
-    outcome.was_refused(2, &["--restarts", "--supervised"]);
+    outcome.was_refused(64, &["--restarts", "--supervised"]);
 }
 
 #[test]

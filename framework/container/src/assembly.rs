@@ -63,7 +63,9 @@ pub enum AssemblyProblem {
         help: String,
     },
     /// The machine has no room for it.
-    #[error("component '{component}': {error}")]
+    #[error(
+        "component '{component}': {error}\n  help: see the limits of this user and machine: memory, open files, address space"
+    )]
     Resources {
         /// Instance name.
         component: String,

@@ -38,7 +38,10 @@ pub enum LibraryError {
     )]
     OutsideSearchPath(String),
     /// The file cannot be read.
-    #[error("library {} cannot be read: {error}", .path.display())]
+    #[error(
+        "library {} cannot be read: {error}\n  help: see that the file may be read by you",
+        .path.display()
+    )]
     Unreadable {
         /// The file.
         path: PathBuf,

@@ -6,17 +6,26 @@ mod commands;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 
 use commands::bench::{self, BenchArguments};
 use commands::check::{self, CheckArguments};
+use commands::completions::{self, CompletionsArguments};
 use commands::fault::{self, FaultArguments};
+use commands::man::{self, ManArguments};
+use commands::new::{self, NewArguments};
 use commands::run::{self, RunArguments};
+use commands::schema::{self, SchemaArguments};
 use commands::world::{self, WorldArguments};
 
 /// Fault tolerance for component-based robots, declared in XML.
+///
+/// A robot is assembled from components in shared libraries, as XML profiles say. Each runs behind a
+/// guard: when one crashes or hangs, that one is out, and the rest goes on. What then happens to it
+/// is said in XML rules: it is reset with its memory restored, replaced by another one, stopped with
+/// what depends on it, or the robot makes an emergency stop.
 #[derive(Debug, Parser)]
-#[command(name = "steadfast", version, about)]
+#[command(name = "steadfast", version, after_long_help = commands::manual::STEADFAST)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -24,14 +33,42 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Check profiles: every problem with its place and what to do about it.
+    /// Check profiles and rules: every problem with its place and what to do about it.
+    ///
+    /// Reads profiles of all kinds (component, application, composite, service type, data type,
+    /// system, world), reference models, fault rules and injections, in the encoding that they
+    /// declare, and everything they refer to. No library is loaded.
     Check(CheckArguments),
     /// Run one application, or several in one container.
+    ///
+    /// Reads all files, loads and compares the libraries, brings the components up in order and runs
+    /// them until --for has passed, the robot has reached its target, or Ctrl-C, which stops
+    /// everything in order; a second Ctrl-C ends the process at once. Without rules a component that
+    /// fails is reset, at most three times in a minute.
     Run(Box<RunArguments>),
     /// List, show, clear and inject faults of a running application.
+    ///
+    /// Talks to `steadfast run` over a socket that only its user may open.
     Fault(FaultArguments),
+    /// Write a project that builds, runs and passes its own test: a component or an application.
+    ///
+    /// The project lies in a new folder of its name. It refers to the SDK of a clone of Steadfast,
+    /// which is looked for upward from this executable and from the current folder.
+    New(NewArguments),
+    /// Print XML schemas, by which editors complete, check and explain profiles and rules.
+    ///
+    /// Each schema is one XSD 1.0 document with the documentation of every element and attribute in
+    /// it. What XSD cannot say (names in other files, bounds that depend on each other) is known to
+    /// `steadfast check` alone.
+    Schema(SchemaArguments),
     /// Measure how good Steadfast is at what it does.
+    ///
+    /// Each study prints a table; --format json has all figures, --picture a drawing.
     Bench(BenchArguments),
+    /// Print what a shell needs to complete commands and options.
+    Completions(CompletionsArguments),
+    /// Print or write manual pages.
+    Man(ManArguments),
     /// Run components for a container, as it says on the standard input.
     #[command(hide = true)]
     Host,
@@ -47,13 +84,71 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    match Arguments::parse().command {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(told) => {
+            // If nobody reads the text the exit code still tells.
+            let _unread = told.print();
+            let is_mistake = told.use_stderr();
+            return ExitCode::from(if is_mistake { commands::USAGE } else { 0 });
+        }
+    };
+    match arguments.command {
         Command::Check(arguments) => check::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Fault(arguments) => fault::run(&arguments),
+        Command::New(arguments) => new::run(&arguments),
+        Command::Schema(arguments) => schema::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Completions(arguments) => completions::run(&arguments, Arguments::command()),
+        Command::Man(arguments) => man::run(&arguments, Arguments::command()),
         Command::Host => container::host::host_main(),
         Command::World(arguments) => world::run(&arguments),
         Command::ProbeLibrary { path } => container::library::probe_main(&path),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Words of a line as a shell makes them of single quotes and blanks.
+    fn words(line: &str) -> Vec<String> {
+        let mut words = Vec::new();
+        for (number, part) in line.split('\'').enumerate() {
+            match number % 2 {
+                0 => words.extend(part.split_whitespace().map(str::to_owned)),
+                _ => words.push(part.to_owned()),
+            }
+        }
+        words
+    }
+
+    #[test]
+    fn the_command_line_is_sound() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn every_command_has_examples_that_work_and_exit_codes() {
+        let command = Arguments::command();
+        let visible = command.get_subcommands().filter(|it| !it.is_hide_set());
+        for command in visible.chain([&command]) {
+            let name = command.get_name();
+            let manual = command.get_after_long_help().map(ToString::to_string);
+            let manual = manual.unwrap_or_else(|| panic!("{name} has no manual"));
+            assert!(manual.contains("Exit codes"), "{name}");
+            let lines = manual.lines().map(str::trim);
+            let examples: Vec<&str> = lines.filter(|it| it.starts_with("steadfast ")).collect();
+            assert!(!examples.is_empty(), "{name}");
+            for example in examples {
+                // What stands behind two blanks says what the example does; what stands behind a
+                // sign is the shell's.
+                let line = example.split("  ").next().unwrap_or_default();
+                let line = line.split(" > ").next().unwrap_or_default();
+                let parsed = Arguments::try_parse_from(words(line));
+                assert!(parsed.is_ok(), "{example}: {:?}", parsed.err());
+            }
+        }
     }
 }

@@ -39,7 +39,10 @@ pub fn check_file(path: &Path, options: &LoadOptions) -> Vec<FileReport> {
                 rules::check_inline(&mut assembly, &specification);
             }
         }
-        Some(Profile::Composite(profile)) => assembly.composite(&file, profile),
+        Some(Profile::Composite(profile)) => {
+            assembly.composite(&file, profile);
+            rules::check_composite(&file, profile);
+        }
         Some(Profile::Component(profile)) => {
             look_up_types(&mut assembly, &file, profile);
             rules::check_component(&mut assembly, &file, profile);

@@ -17,6 +17,7 @@ mod problem;
 mod readers;
 mod reading;
 mod resolve;
+mod schema;
 mod source;
 mod suggest;
 mod syntax;
@@ -36,5 +37,6 @@ pub use resolve::{
     InjectionsOutcome, LoadOptions, LoadOutcome, RulesOutcome, load_application, load_injections,
     load_rules, read_injection,
 };
+pub use schema::{SCHEMAS, Schema};
 pub use source::Source;
 pub use value::{Number, Value};

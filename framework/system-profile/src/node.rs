@@ -34,7 +34,14 @@ pub struct Node<'a> {
     elements_asked: RefCell<Vec<&'static str>>,
     attributes_asked: RefCell<Vec<&'static str>>,
     passed_over: RefCell<Vec<&'static str>>,
+    attributes_passed_over: RefCell<Vec<&'static str>>,
     text_asked: Cell<bool>,
+}
+
+/// Names that may stand in an element.
+struct Known<'a> {
+    asked: &'a [&'static str],
+    passed_over: &'a [&'static str],
 }
 
 impl<'a> Node<'a> {
@@ -45,6 +52,7 @@ impl<'a> Node<'a> {
             elements_asked: RefCell::default(),
             attributes_asked: RefCell::default(),
             passed_over: RefCell::default(),
+            attributes_passed_over: RefCell::default(),
             text_asked: Cell::new(false),
         }
     }
@@ -140,13 +148,24 @@ impl<'a> Node<'a> {
         Some(value)
     }
 
-    /// The value of an attribute, if it exists and is not empty.
+    /// The value of an attribute, if it exists and is not empty; one that is empty is warned of.
     pub fn attribute(&self, name: &'static str) -> Option<Value<'a>> {
+        let value = self.written_attribute(name)?;
+        if value.is_empty() {
+            self.warning(
+                format!("{} is empty", value.owner()),
+                Some("it is not read; write a value, or remove it".into()),
+            );
+            return None;
+        }
+        Some(value)
+    }
+
+    /// The value of an attribute, which may be empty.
+    fn written_attribute(&self, name: &'static str) -> Option<Value<'a>> {
         self.attributes_asked.borrow_mut().push(name);
-        let attributes = &self.element.attributes;
-        let found = attributes
-            .iter()
-            .find(|attribute| attribute.name == name && !attribute.value.trim().is_empty())?;
+        let mut attributes = self.element.attributes.iter();
+        let found = attributes.find(|attribute| attribute.name == name)?;
         Some(Value::new(
             found.value.trim(),
             found.value_span.clone(),
@@ -157,7 +176,8 @@ impl<'a> Node<'a> {
 
     /// The value of an attribute; an error if it is missing or empty.
     pub fn required_attribute(&self, name: &'static str) -> Option<Value<'a>> {
-        let found = self.attribute(name);
+        let found = self.written_attribute(name);
+        let found = found.filter(|value| !value.is_empty());
         if found.is_none() {
             self.error(
                 format!("<{}> has no {name}", quoted(self.name())),
@@ -182,9 +202,14 @@ impl<'a> Node<'a> {
         )
     }
 
-    /// Elements and attributes that may stand here but are read by others, or by nobody.
+    /// Elements that may stand here but are read by others, or by nobody.
     pub fn pass_over(&self, names: &[&'static str]) {
         self.passed_over.borrow_mut().extend(names);
+    }
+
+    /// Attributes that may stand here but are read by nobody.
+    pub fn pass_over_attributes(&self, names: &[&'static str]) {
+        self.attributes_passed_over.borrow_mut().extend(names);
     }
 
     /// Reports an error with this element.
@@ -201,27 +226,28 @@ impl<'a> Node<'a> {
 
     /// Warns of every element, attribute and text that was never asked for.
     pub fn finish(&self) {
-        let passed_over = self.passed_over.borrow();
-        let unknown = |name: &str, asked: &[&'static str]| {
+        let unknown = |name: &str, known: &Known<'_>| {
             let everywhere = PRESENTATION.contains(&name) || name.contains(':') || name == "xmlns";
-            !everywhere && !asked.contains(&name) && !passed_over.contains(&name)
+            !everywhere && !known.asked.contains(&name) && !known.passed_over.contains(&name)
         };
-        let asked = self.attributes_asked.borrow();
+        let known = Known {
+            asked: &self.attributes_asked.borrow(),
+            passed_over: &self.attributes_passed_over.borrow(),
+        };
         for attribute in &self.element.attributes {
-            if unknown(&attribute.name, &asked) {
-                self.leftover(
-                    "attribute ",
-                    &attribute.name,
-                    &attribute.name_span,
-                    &asked,
-                    "",
-                );
+            if unknown(&attribute.name, &known) {
+                let (name, span) = (&attribute.name, &attribute.name_span);
+                self.leftover(format!("attribute {}", quoted(name)), name, span, &known);
             }
         }
-        let asked = self.elements_asked.borrow();
+        let known = Known {
+            asked: &self.elements_asked.borrow(),
+            passed_over: &self.passed_over.borrow(),
+        };
         for child in &self.element.children {
-            if unknown(&child.name, &asked) {
-                self.leftover("element <", &child.name, &child.name_span, &asked, ">");
+            if unknown(&child.name, &known) {
+                let (name, span) = (&child.name, &child.name_span);
+                self.leftover(format!("element <{}>", quoted(name)), name, span, &known);
             }
         }
         if !self.text_asked.get() && !self.element.text.is_empty() {
@@ -233,33 +259,21 @@ impl<'a> Node<'a> {
         }
     }
 
-    fn leftover(
-        &self,
-        kind: &str,
-        name: &str,
-        span: &Range<usize>,
-        asked: &[&'static str],
-        end: &str,
-    ) {
-        let message = format!(
-            "unknown {kind}{}{end} in <{}>",
-            quoted(name),
-            quoted(self.name())
-        );
+    fn leftover(&self, what: String, name: &str, span: &Range<usize>, known: &Known<'_>) {
+        let message = format!("unknown {what} in <{}>", quoted(self.name()));
         let help = match self.log.has_room_for(Severity::Warning) {
-            true => self.help_for(name, asked),
+            true => self.help_for(name, known),
             false => None,
         };
         self.log.warning(span.clone(), message, help);
     }
 
-    fn help_for(&self, name: &str, asked: &[&'static str]) -> Option<String> {
+    fn help_for(&self, name: &str, known: &Known<'_>) -> Option<String> {
         let intro = format!("<{}> may hold", quoted(self.name()));
-        let passed_over = self.passed_over.borrow();
-        let all = asked.iter().chain(passed_over.iter()).copied();
+        let all = known.asked.iter().chain(known.passed_over).copied();
         match suggest::nearest(name, all) {
-            Some(near) if !asked.contains(&near) => Some(format!("did you mean `{near}`?")),
-            _ => suggest::help(name, &intro, asked.iter().copied())
+            Some(near) if !known.asked.contains(&near) => Some(format!("did you mean `{near}`?")),
+            _ => suggest::help(name, &intro, known.asked.iter().copied())
                 .or_else(|| Some("it is not read; remove it".into())),
         }
     }

@@ -17,6 +17,7 @@ use clap::{Args, Subcommand, ValueEnum};
 
 /// What `steadfast bench` is asked to do.
 #[derive(Debug, Args)]
+#[command(after_long_help = super::manual::BENCH)]
 pub struct BenchArguments {
     #[command(subcommand)]
     study: Study,

@@ -10,7 +10,7 @@ use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use system_profile::{FileReport, LoadOptions, Problem, Severity, check_file};
 
-use super::problems;
+use super::{output, problems};
 
 /// All is well.
 const GOOD: u8 = 0;
@@ -21,6 +21,7 @@ const CANNOT_READ: u8 = 2;
 
 /// What `steadfast check` is asked to do.
 #[derive(Debug, Args)]
+#[command(after_long_help = super::manual::CHECK)]
 pub struct CheckArguments {
     /// XML files to check; a folder stands for all XML files in it
     #[arg(value_name = "FILE", required = true)]
@@ -57,19 +58,7 @@ pub fn run(arguments: &CheckArguments) -> ExitCode {
         Format::Human => write_human(&reports),
         Format::Json => write_json(&reports, arguments.reading),
     };
-    match written {
-        // Whoever reads the output has seen enough; the exit code still tells the result.
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {}
-        Err(error) => {
-            let _nobody_left_to_tell = writeln!(
-                io::stderr(),
-                "steadfast check: the result cannot be written: {error}"
-            );
-            return ExitCode::from(CANNOT_READ);
-        }
-        Ok(()) => {}
-    }
-    ExitCode::from(exit_code(&reports, arguments.strict))
+    output::finish("check", written, exit_code(&reports, arguments.strict))
 }
 
 fn reports(arguments: &CheckArguments) -> Vec<FileReport> {

@@ -20,10 +20,7 @@ const NO_ANSWER: u8 = 2;
 
 /// What `steadfast fault` is asked to do.
 #[derive(Debug, Args)]
-#[command(after_help = "Exit codes:
-  0  it was done
-  1  the application refused: no such fault, or nothing that can be injected
-  2  no application is running, several are, or it does not answer")]
+#[command(after_long_help = super::manual::FAULT)]
 pub struct FaultArguments {
     #[command(subcommand)]
     command: FaultCommand,

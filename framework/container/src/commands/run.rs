@@ -43,15 +43,7 @@ const LIBRARY_PATH_VARIABLE: &str = "STEADFAST_LIBRARY_PATH";
 
 /// What `steadfast run` is asked to do.
 #[derive(Debug, Args)]
-#[command(after_help = "Exit codes:
-  0  the run ended: target reached, duration elapsed, or stopped by Ctrl-C
-  1  a profile or world file has problems
-  2  a file cannot be read or written
-  3  a library is missing, no component, or for another container
-  4  ports or connections do not fit the libraries
-  5  a component refused to be initialised or started, or hung in it
-  6  the system refused threads or memory
-  7  --supervised: the container failed more often than --restarts allows")]
+#[command(after_long_help = super::manual::RUN)]
 pub struct RunArguments {
     /// Application profiles (`package_profile` or `application_profile`), run in one container
     #[arg(required = true, value_name = "APPLICATION.xml")]
@@ -240,7 +232,10 @@ pub(super) fn simulation(path: &Path, seed: u64) -> Result<Simulation, Failed> {
     show(&outcome.problems);
     Simulation::new(&world, seed).map_err(|error| Failed {
         code: exit_code::PROFILE,
-        text: format!("{}: {error}", path.display()),
+        text: format!(
+            "{}: {error}\n  help: mend the world, or leave <world> out of the application",
+            path.display()
+        ),
     })
 }
 
@@ -252,7 +247,10 @@ fn watch_signals() -> Result<Arc<AtomicBool>, Failed> {
             .and_then(|_id| signal_hook::flag::register(signal, Arc::clone(&asked)))
             .map_err(|error| Failed {
                 code: exit_code::SYSTEM,
-                text: format!("signals cannot be watched: {error}"),
+                text: format!(
+                    "signals cannot be watched: {error}\n  help: see the limits of this user and \
+                     machine"
+                ),
             })?;
     }
     Ok(asked)

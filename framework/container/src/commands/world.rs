@@ -39,7 +39,9 @@ pub fn run(arguments: &WorldArguments) -> ExitCode {
 fn serve_parent(arguments: &WorldArguments) -> Result<(), Failed> {
     let system = |error: io::Error| Failed {
         code: exit_code::SYSTEM,
-        text: format!("the simulated world cannot run: {error}"),
+        text: format!(
+            "the simulated world cannot run: {error}\n  help: it is started by 'steadfast run --supervised'"
+        ),
     };
     die_with_parent(arguments.parent).map_err(system)?;
     let line = take_line().map_err(system)?;

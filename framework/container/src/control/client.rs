@@ -23,7 +23,9 @@ pub enum ClientError {
     #[error("no application is running\n  help: start one with 'steadfast run APPLICATION.xml'")]
     NoneRunning,
     /// Nothing of that name runs.
-    #[error("no application '{wanted}' is running; there are: {others}")]
+    #[error(
+        "no application '{wanted}' is running; there are: {others}\n  help: choose one of these with --application"
+    )]
     NotRunning {
         /// The name.
         wanted: String,
@@ -36,7 +38,9 @@ pub enum ClientError {
     )]
     Several(String),
     /// Nobody answers at the socket.
-    #[error("nothing answers at {path}: {error}")]
+    #[error(
+        "nothing answers at {path}: {error}\n  help: has it just ended? 'steadfast run' says where it can be found"
+    )]
     Connection {
         /// The socket.
         path: PathBuf,
@@ -44,7 +48,9 @@ pub enum ClientError {
         error: io::Error,
     },
     /// What came is no answer.
-    #[error("what came from {0} is no answer: is it another version?")]
+    #[error(
+        "what came from {0} is no answer\n  help: is it another version? Ask with the steadfast that runs it"
+    )]
     NoAnswer(PathBuf),
 }
 

@@ -35,7 +35,9 @@ pub enum ControlError {
     #[error("this process runs an application '{0}' already")]
     Taken(String),
     /// The system refuses.
-    #[error("the socket {path} cannot be made: {error}")]
+    #[error(
+        "the socket {path} cannot be made: {error}\n  help: set XDG_RUNTIME_DIR to a folder of your own"
+    )]
     Socket {
         /// The socket.
         path: PathBuf,

@@ -183,7 +183,8 @@ impl RunningSystem {
     fn port(&self, component: usize, name: &str) -> Result<(usize, &PortDescription), String> {
         let ports = self.interfaces.get(component).into_iter().flatten();
         let found = ports.enumerate().find(|(_, port)| port.name == name);
-        found.ok_or_else(|| format!("the library has no port '{name}'"))
+        found
+            .ok_or_else(|| format!("the library has no port '{name}'; see the component's profile"))
     }
 }
 

@@ -33,7 +33,10 @@ pub enum StartError {
         components: Vec<String>,
     },
     /// The event file cannot be written.
-    #[error("{} cannot be written: {error}", .path.display())]
+    #[error(
+        "{} cannot be written: {error}\n  help: name a file in a folder that you may write to",
+        .path.display()
+    )]
     Output {
         /// The file.
         path: PathBuf,
@@ -41,7 +44,9 @@ pub enum StartError {
         error: std::io::Error,
     },
     /// The system refused threads or files.
-    #[error("the container cannot run: {0}")]
+    #[error(
+        "the container cannot run: {0}\n  help: see the limits of this user and machine: threads, open files, memory"
+    )]
     System(#[from] std::io::Error),
 }
 

@@ -5,15 +5,15 @@ use system_model::profile::{
     PortConnection, Subcomponent,
 };
 
-use super::FAULT_TOLERANCE;
 use super::header::{self, required_attribute, required_text};
 use super::ports;
+use super::{APPLICATION_RULES, COMPONENT_RULES};
 use crate::node::Node;
 
 /// Reads an application profile.
 pub(super) fn read(root: &Node<'_>) -> ApplicationProfile {
     root.pass_over(&["reference", "execution_environment"]);
-    root.pass_over(&FAULT_TOLERANCE);
+    root.pass_over(&APPLICATION_RULES);
     ApplicationProfile {
         header: header::read(root),
         subcomponents: subcomponents(root),
@@ -25,7 +25,7 @@ pub(super) fn read(root: &Node<'_>) -> ApplicationProfile {
 
 /// Reads a composite profile.
 pub(super) fn read_composite(root: &Node<'_>) -> CompositeProfile {
-    root.pass_over(&FAULT_TOLERANCE);
+    root.pass_over(&["voting"]);
     let exports = root.required_child("export_ports");
     CompositeProfile {
         header: header::read(root),
@@ -64,7 +64,7 @@ fn subcomponent(node: &Node<'_>) -> Subcomponent {
         properties: header::properties(node),
     };
     node.pass_over(&["id", "version", "type", "port"]);
-    node.pass_over(&FAULT_TOLERANCE);
+    node.pass_over(&COMPONENT_RULES);
     node.finish();
     member
 }
@@ -83,6 +83,7 @@ fn connection(node: &Node<'_>) -> Option<PortConnection> {
     let kind = ports::kind(node, node.attribute("port_type"));
     let (source, target) = (node.required_child("source"), node.required_child("target"));
     node.pass_over(&["io_type"]);
+    node.pass_over_attributes(&["io_type"]);
     node.finish();
     let (source, target) = (end(&source?), end(&target?));
     Some(PortConnection {

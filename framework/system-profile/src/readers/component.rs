@@ -3,14 +3,14 @@
 use system_model::profile::{ComponentProfile, ExecutionEnvironment, Located, OperatingSystem};
 
 use super::header::{self, attribute, text};
-use super::{FAULT_TOLERANCE, execution, ports};
+use super::{COMPONENT_RULES, execution, ports};
 use crate::node::Node;
 
 /// Reads a component profile.
 pub(super) fn read(root: &Node<'_>) -> ComponentProfile {
     let (execution, remarks) = execution::read(root);
     root.pass_over(&["fsm"]);
-    root.pass_over(&FAULT_TOLERANCE);
+    root.pass_over(&COMPONENT_RULES);
     ComponentProfile {
         header: header::read(root),
         environment: environment(root),

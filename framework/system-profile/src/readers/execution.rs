@@ -87,7 +87,12 @@ fn period(node: &Node<'_>, kind: Option<ExecutionKind>) -> Duration {
     );
     let help = || Some("write the period in milliseconds: <period>20</period>".to_owned());
     match value {
-        _ if !periodic => Duration::ZERO,
+        Some(value) if !periodic => {
+            // Not needed, but whoever writes nonsense is told.
+            value.lenient_integer();
+            Duration::ZERO
+        }
+        None if !periodic => Duration::ZERO,
         None => {
             node.error("a periodic component without a period", help());
             Duration::ZERO

@@ -78,6 +78,7 @@ pub(crate) fn read(root: &Node<'_>) -> Option<DeclaredInjections> {
         injections: nodes.iter().filter_map(injection).collect(),
     };
     root.pass_over(&["name", "version", "description", "copyright"]);
+    root.pass_over_attributes(&["name", "version"]);
     root.finish();
     Some(injections)
 }
@@ -93,9 +94,10 @@ pub(crate) fn injection(node: &Node<'_>) -> Option<DeclaredInjection> {
         .and_then(|kind| kind::read(node, kind, component.is_some()));
     if what.is_none() {
         // Which attributes belong here depends on a KIND that is not known.
-        node.pass_over(&kind::ATTRIBUTES);
+        node.pass_over_attributes(&kind::ATTRIBUTES);
     }
     node.pass_over(&["description"]);
+    node.pass_over_attributes(&["description"]);
     node.finish();
     Some(DeclaredInjection {
         component,

@@ -38,12 +38,11 @@ pub const PROFILE_ROOTS: [&str; 13] = [
     injection::INJECTIONS_ROOT,
 ];
 
-/// Elements of the fault-tolerance dialect. They may stand inline in profiles, and are read
-/// together with the rule files, not here.
-pub(crate) const FAULT_TOLERANCE: [&str; 29] = [
+/// Rules of a component that may stand inline in its profile or where an application uses it. They
+/// are read together with the rule files, not here; so are those below.
+pub(crate) const COMPONENT_RULES: [&str; 21] = [
     "actuator",
     "adapt",
-    "backup",
     "confirm",
     "dependency",
     "estimator",
@@ -51,26 +50,31 @@ pub(crate) const FAULT_TOLERANCE: [&str; 29] = [
     "exception",
     "fault",
     "fault_event",
-    "freshness",
     "handle",
     "heartbeat",
     "isolation",
     "memory",
-    "monitor",
     "overrun",
     "process_model",
-    "rate_of_change",
     "recovery",
     "resurrect",
-    "secondary",
     "severity",
     "standby",
-    "stuck",
-    "validation",
-    "validity",
     "voting",
     "watchdog",
 ];
+
+/// As [`COMPONENT_RULES`], of a port.
+pub(crate) const PORT_RULES: [&str; 5] = [
+    "freshness",
+    "rate_of_change",
+    "stuck",
+    "validation",
+    "validity",
+];
+
+/// As [`COMPONENT_RULES`], of an application.
+pub(crate) const APPLICATION_RULES: [&str; 3] = ["dependency", "fault", "heartbeat"];
 
 /// Makes a document typed. A profile with errors is still returned, as far as it could be
 /// understood; ask [`Document::has_errors`] before it is used. A world is looked through for its

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use system_model::profile::{Located, PortProfile};
 use system_model::specification::{Place, PortDirection, PortKind, PortSpecification, QueuePolicy};
 
-use super::FAULT_TOLERANCE;
+use super::PORT_RULES;
 use super::header::required_text;
 use crate::node::Node;
 use crate::suggest::quoted;
@@ -60,7 +60,7 @@ fn read_port(node: &Node<'_>) -> Option<PortProfile> {
     let (queue, queue_size) = queue(node);
     let reference = node.value("reference").map(|value| value.located());
     node.pass_over(&["description"]);
-    node.pass_over(&FAULT_TOLERANCE);
+    node.pass_over(&PORT_RULES);
     node.finish();
     Some(PortProfile {
         port: PortSpecification {

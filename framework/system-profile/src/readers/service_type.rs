@@ -43,6 +43,7 @@ fn method(node: &Node<'_>) -> ServiceMethod {
         parameters: node.children("param").iter().map(parameter).collect(),
     };
     node.pass_over(&["description"]);
+    node.pass_over_attributes(&["description"]);
     node.finish();
     found
 }

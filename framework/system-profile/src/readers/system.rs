@@ -4,15 +4,19 @@ use system_model::profile::{
     Channel, Deployment, LoadPolicy, Logger, NodeAddress, Setting, SystemProfile,
 };
 
-use super::FAULT_TOLERANCE;
 use super::header::{attribute, required_attribute};
 use crate::node::Node;
 use crate::value::Value;
 
 /// Reads a system file.
 pub(super) fn read(root: &Node<'_>) -> SystemProfile {
-    root.pass_over(&["name", "description", "copyright", "applications"]);
-    root.pass_over(&FAULT_TOLERANCE);
+    root.pass_over(&[
+        "name",
+        "description",
+        "copyright",
+        "applications",
+        "dependency",
+    ]);
     let mut profile = SystemProfile {
         file: root.place().file,
         ..SystemProfile::default()
@@ -117,7 +121,7 @@ fn component_manager(node: &Node<'_>, profile: &mut SystemProfile) {
             value.map_or(Some(default), |value| value.number())
         };
         profile.nonblocking_workers = count("min", 5).zip(count("max", 10));
-        workers.pass_over(&["scalable"]);
+        workers.pass_over_attributes(&["scalable"]);
         workers.finish();
     }
     if let Some(connector) = node.child("io_connector") {

@@ -30,7 +30,10 @@ pub(super) fn read(arguments: &RunArguments) -> Result<(Vec<Application>, Vec<Pr
     for file in files {
         std::fs::File::open(file).map_err(|error| Failed {
             code: exit_code::FILE,
-            text: format!("{} cannot be read: {error}", file.display()),
+            text: format!(
+                "{} cannot be read: {error}\n  help: check the name, and that you may read it",
+                file.display()
+            ),
         })?;
     }
     let mut reading = Reading {

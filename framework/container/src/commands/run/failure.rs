@@ -6,18 +6,15 @@ use std::path::Path;
 use container::assembly::AssemblyProblem;
 use container::system::StartError;
 
-/// Exit codes of `run`, by kind; the manual of the command lists them.
+/// Exit codes of `run`, by kind.
 pub(in crate::commands) mod exit_code {
-    pub const ENDED: u8 = 0;
-    pub const PROFILE: u8 = 1;
-    pub const FILE: u8 = 2;
-    pub const LIBRARY: u8 = 3;
-    pub const CONNECTION: u8 = 4;
-    pub const COMPONENT: u8 = 5;
-    pub const SYSTEM: u8 = 6;
+    pub use crate::commands::exit_code::{
+        COMPONENT, CONNECTION, DONE as ENDED, FILE, LIBRARY, REFUSED as PROFILE, SYSTEM, USAGE,
+    };
 }
 
 /// Why there is nothing (more) to run: exit code and text.
+#[derive(Debug)]
 pub(in crate::commands) struct Failed {
     pub(in crate::commands) code: u8,
     pub(in crate::commands) text: String,
@@ -51,6 +48,8 @@ pub(super) fn unwritable(path: Option<&Path>, error: &io::Error) -> Failed {
     );
     Failed {
         code: exit_code::FILE,
-        text: format!("{name} cannot be written: {error}"),
+        text: format!(
+            "{name} cannot be written: {error}\n  help: name a file in a folder that you may write to"
+        ),
     }
 }

@@ -52,7 +52,7 @@ fn beat_limit(text: &str) -> Result<Duration, String> {
 pub(super) fn run(arguments: &RunArguments) -> Result<u8, Failed> {
     if arguments.clock == ClockArgument::Simulated {
         return Err(Failed {
-            code: exit_code::FILE,
+            code: exit_code::USAGE,
             text: "--supervised and --clock simulated do not go together: simulated time stands still \
                    while no container runs\n  help: leave one of them out"
                 .to_owned(),
@@ -91,7 +91,10 @@ pub(super) fn join(arguments: &RunArguments) -> Result<Option<Arc<Supervised>>, 
     let joined = parent.map(Supervised::join).transpose();
     let joined = joined.map_err(|error| Failed {
         code: exit_code::SYSTEM,
-        text: format!("the parent that is to supervise cannot be reached: {error}"),
+        text: format!(
+            "the parent that is to supervise cannot be reached: {error}\n  help: start the run with \
+             --supervised, which makes a parent"
+        ),
     })?;
     Ok(joined.map(Arc::new))
 }

@@ -46,7 +46,10 @@ pub struct PlannedWorld {
 #[derive(Debug, thiserror::Error)]
 pub enum SuperviseError {
     /// A file cannot be opened or written.
-    #[error("{} cannot be opened or written: {error}", .path.display())]
+    #[error(
+        "{} cannot be opened or written: {error}\n  help: see that it is there and that you may write to it",
+        .path.display()
+    )]
     File {
         /// The file.
         path: PathBuf,
@@ -54,15 +57,19 @@ pub enum SuperviseError {
         error: io::Error,
     },
     /// The system refuses.
-    #[error("the container cannot be supervised: {0}")]
+    #[error(
+        "the container cannot be supervised: {0}\n  help: see the limits of this user: processes, open files; or run it without --supervised"
+    )]
     System(#[from] io::Error),
     /// A killed container does not end.
     #[error(
-        "the container was killed and has not ended within {} s: it waits for hardware that does not answer",
+        "the container was killed and has not ended within {} s: it waits for hardware that does not answer\n  help: see the devices that its components open; only a restart of the machine may free it",
         KILL_LIMIT.as_secs()
     )]
     DoesNotEnd,
     /// The simulated world has ended by itself.
-    #[error("the process of the simulated world has ended, and the run with it")]
+    #[error(
+        "the process of the simulated world has ended, and the run with it\n  help: what it said stands above; start the run again"
+    )]
     WorldEnded,
 }

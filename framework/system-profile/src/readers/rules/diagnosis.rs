@@ -35,7 +35,9 @@ const KINDS: [(&str, EntityKind); 3] = [
 
 /// `severity` of a component.
 pub(super) fn component_severity(node: &Node<'_>) -> Option<Located<ComponentSeverity>> {
-    let value = node.value("severity")?;
+    let child = node.child("severity")?;
+    let value = child.text();
+    child.finish();
     Some(Located {
         value: value.choice(&COMPONENT_SEVERITIES)?,
         place: value.place(),

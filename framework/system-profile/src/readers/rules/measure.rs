@@ -35,9 +35,28 @@ pub(super) fn setting<'a>(node: &Node<'a>, name: &'static str) -> Option<Value<'
 /// As [`setting`], for several names of the same meaning.
 pub(super) fn setting_of<'a>(node: &Node<'a>, names: &[&'static str]) -> Option<Value<'a>> {
     let attributes = names.iter().filter_map(|name| node.attribute(name));
-    let attribute = attributes.collect::<Vec<_>>().into_iter().next();
-    let child = node.value_of(names);
-    attribute.or(child)
+    let attributes: Vec<_> = attributes.collect();
+    let child = node.child_of(names).map(|child| {
+        let value = child.text();
+        child.finish();
+        value
+    });
+    let mut written = attributes.into_iter().chain(child);
+    let first = written.next()?;
+    for other in written {
+        other.warning(
+            format!("{} says again what {} says", other.owner(), first.owner()),
+            Some("only the first one is read; remove one of them".into()),
+        );
+    }
+    if first.is_empty() {
+        first.warning(
+            format!("{} is empty", first.owner()),
+            Some("it is not read; write a value, or remove it".into()),
+        );
+        return None;
+    }
+    Some(first)
 }
 
 /// A setting that must be there.

@@ -66,6 +66,7 @@ pub(crate) fn read(root: &Node<'_>) -> Option<DeclaredRules> {
     rules.own = application_elements(root);
     rules.dependencies.extend(dependencies(root, None));
     root.pass_over(&["name", "version", "description", "copyright"]);
+    root.pass_over_attributes(&["name", "version"]);
     root.finish();
     Some(rules)
 }
@@ -79,6 +80,7 @@ fn component(node: &Node<'_>) -> DeclaredComponent {
     let mut component = component_elements(node, &name);
     component.place = node.place();
     node.pass_over(&["description"]);
+    node.pass_over_attributes(&["description"]);
     node.finish();
     component
 }

@@ -20,7 +20,7 @@ mod secondaries;
 use std::path::PathBuf;
 use std::rc::Rc;
 
-use system_model::profile::{ComponentProfile, Located, Profile, Subcomponent};
+use system_model::profile::{ComponentProfile, CompositeProfile, Located, Profile, Subcomponent};
 use system_model::rules::FaultRules;
 use system_model::specification::{ApplicationSpecification, Place};
 
@@ -234,6 +234,14 @@ pub(crate) fn check_component(
     let mut inline = DeclaredRules::default();
     inline.take(rules);
     resolve_declared(assembly, &application, inline, Vec::new());
+}
+
+/// Reports what is wrong with the voters in a composite as such; what they name is known only to an
+/// application.
+pub(crate) fn check_composite(file: &LoadedFile, profile: &CompositeProfile) {
+    if let Some(root) = file.document.root(&PROFILE_ROOTS) {
+        reader::composite_elements(&root, &profile.header.name, "");
+    }
 }
 
 /// Reports what is wrong with the dependencies in a system file.

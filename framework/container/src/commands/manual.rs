@@ -1,0 +1,136 @@
+//! What the commands' help says beyond their options: examples, and how they end.
+
+/// Behind the list of commands.
+pub const STEADFAST: &str = "\
+A first session:
+  steadfast new application patrol  writes two components, rules, and faults to be made on purpose
+  cd patrol && ./test.sh            builds, checks and runs all of it
+  steadfast check profiles rules    lists every problem of the files, and what to do about it
+  steadfast run profiles/applications/patrol.xml --library-path target/debug
+                                    runs it until Ctrl-C
+  steadfast fault list              says, beside it, what has gone wrong
+
+Exit codes, of all commands:
+   0  what was asked for is done
+   1  refused: a file has problems, a running application says no, or a name cannot be used
+   2  a file cannot be read or written, or no running application answers
+   3  a library is missing, no component, or for another container
+   4  ports or connections do not fit the libraries
+   5  a component refused to start, or hung in it
+   6  the system refused threads or memory
+   7  the container failed more often than --restarts allows
+  64  the command line is not understood
+ 130  a second Ctrl-C ended the run at once
+
+Environment:
+  STEADFAST_LIBRARY_PATH  folders with component libraries, separated by colons
+  STATE_DIRECTORY, XDG_STATE_HOME
+                          where checkpoints lie that outlive the container
+  NO_COLOR                no colours, wherever the output goes";
+
+/// Of `check`.
+pub const CHECK: &str = "\
+Examples:
+  steadfast check profiles rules
+  steadfast check application.xml --strict --search-path ../components
+  steadfast check application.xml --format json
+
+Exit codes:
+  0  no problem, or warnings only and no --strict
+  1  problems
+  2  a file cannot be read";
+
+/// Of `run`.
+pub const RUN: &str = "\
+Examples:
+  steadfast run application.xml
+  steadfast run application.xml --clock simulated --seed 7 --for 30s --summary summary.json
+  steadfast run application.xml --rules rules.xml --inject injections.xml --events events.jsonl
+  steadfast run navigation.xml mapping.xml --library-path target/release
+  steadfast run application.xml --supervised --restarts 3
+
+Exit codes:
+    0  the run ended: target reached, duration elapsed, or stopped by Ctrl-C
+    1  a profile, world, rule or injection file has problems
+    2  a file cannot be read or written
+    3  a library is missing, no component, or for another container
+    4  ports or connections do not fit the libraries
+    5  a component refused to be initialised or started, or hung in it
+    6  the system refused threads or memory
+    7  --supervised: the container failed more often than --restarts allows
+  130  a second Ctrl-C ended it at once";
+
+/// Of `fault`.
+pub const FAULT: &str = "\
+Examples:
+  steadfast fault list
+  steadfast fault show 3 --format json
+  steadfast fault clear --all
+  steadfast fault inject '<inject component=\"camera\" fault=\"hang\"/>'
+
+Exit codes:
+  0  it was done
+  1  the application refused: no such fault, or nothing that can be injected
+  2  no application is running, several are, or it does not answer";
+
+/// Of `bench`.
+pub const BENCH: &str = "\
+Examples:
+  steadfast bench recovery --quick
+  steadfast bench overhead --picture overhead.svg
+  steadfast bench detection --format json
+
+Exit codes:
+  0  measured
+  1  the model has problems
+  2  a run failed, or a file cannot be written";
+
+/// Of `schema`.
+pub const SCHEMA: &str = "\
+Examples:
+  steadfast schema
+  steadfast schema steadfast > steadfast.xsd
+  steadfast schema fault-rules > fault-rules.xsd
+
+In Visual Studio Code, with the extension XML by Red Hat, settings.json:
+  \"xml.fileAssociations\": [{\"pattern\": \"**/*.xml\", \"systemId\": \"steadfast.xsd\"}]
+
+In any editor that knows it, behind the XML declaration of a file:
+  <?xml-model href=\"steadfast.xsd\"?>
+
+Exit codes:
+  0  printed
+  2  the output cannot be written";
+
+/// Of `new`.
+pub const NEW: &str = "\
+Examples:
+  steadfast new component thermometer
+  steadfast new component low_pass --language c
+  steadfast new application greenhouse --sdk ~/steadfast
+
+Exit codes:
+  0  the project is written
+  1  the name cannot be used, or its folder is there already
+  2  the SDK is not found, or a file cannot be written";
+
+/// Of `completions`.
+pub const COMPLETIONS: &str = "\
+Examples:
+  steadfast completions bash > ~/.local/share/bash-completion/completions/steadfast
+  steadfast completions zsh > ~/.zfunc/_steadfast
+  steadfast completions fish > ~/.config/fish/completions/steadfast.fish
+
+Exit codes:
+  0  printed
+  2  the output cannot be written";
+
+/// Of `man`.
+pub const MAN: &str = "\
+Examples:
+  steadfast man --output ~/.local/share/man/man1
+  steadfast man > steadfast.1
+
+Exit codes:
+  0  written
+  2  a page cannot be written";
