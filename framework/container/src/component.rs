@@ -225,6 +225,7 @@ impl Component {
             .run_or_fail(Callback::Execute, "onExecute", loss)
             .is_ok()
         {
+            self.services.work_done();
             self.status.count_cycle();
             if self.unproven {
                 self.prove();

@@ -76,6 +76,31 @@ fn a_datum_in_work_when_two_died_is_set_aside() {
     }
 }
 
+/// Whoever dies after its work was done, in `onUpdated`, takes no datum along: its successor would
+/// pass the same one on again to whoever has read it already. Who has not read it never will: an old
+/// incarnation had sent it.
+#[test]
+fn a_datum_that_was_passed_on_does_not_come_twice() {
+    for (callback, expected) in [
+        ("onExecute", [1, 2, 3, 4, 5, 6, 7, 8, 9, 10].as_slice()),
+        ("onUpdated", &[1, 2, 3, 4, 5, 7, 8, 9, 10]),
+    ] {
+        let outcome = Application::new()
+            .with(&Member::new("counter", "counter").priority(9))
+            .with(&Member::new("echo", "echo").priority(8))
+            .with(&Member::new("recorder", "recorder").property("verbose", "true"))
+            .connect("data", "counter.output", "echo.input")
+            .connect("data", "echo.output", "recorder.input")
+            .injections(&format!(
+                "<inject at='50ms' component='echo' callback='{callback}' fault='panic'/>"
+            ))
+            .simulate("100ms")
+            .ended_well();
+        assert_eq!(outcome.component("echo")["incarnation"], 2, "{callback}");
+        assert_eq!(received(&outcome), expected, "{callback}");
+    }
+}
+
 /// Events likewise, in order, none lost but the one.
 #[test]
 fn an_event_in_work_when_two_died_is_set_aside() {

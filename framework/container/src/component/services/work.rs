@@ -15,6 +15,13 @@ impl Services {
         self.contaminated = false;
     }
 
+    /// The cycle's data have been worked on, and what came of them is sent: whoever dies later takes
+    /// none of them along, and its successor would do it twice.
+    #[inline]
+    pub(in crate::component) fn work_done(&mut self) {
+        self.in_work = 0;
+    }
+
     /// When the cycle began, in nanoseconds of the container's clock.
     #[inline]
     pub(in crate::component) fn cycle_ns(&self) -> u64 {
