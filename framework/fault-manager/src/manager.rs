@@ -106,6 +106,7 @@ impl FaultManager {
             } => self.works(component, incarnation),
             Observation::Clear(None) => self.clear_all(),
             Observation::Clear(Some(id)) => self.clear(id),
+            Observation::Ordered { component, order } => self.ordered(component, order),
             Observation::Tick => {}
         }
         self.elapse(|due| due <= before);
