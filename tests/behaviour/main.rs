@@ -17,6 +17,8 @@ mod hangs;
 mod injections;
 mod isolation;
 mod life_cycle;
+mod live_orders;
+mod live_view;
 mod manager_ports;
 mod memory;
 mod persistence;

@@ -2,7 +2,12 @@
 
 pub mod bench;
 pub mod check;
+pub mod component;
 pub mod fault;
+mod operator;
 pub mod problems;
 pub mod run;
+pub mod status;
+pub mod top;
+mod words;
 pub mod world;

@@ -10,8 +10,11 @@ use clap::{Parser, Subcommand};
 
 use commands::bench::{self, BenchArguments};
 use commands::check::{self, CheckArguments};
+use commands::component::{self, ComponentArguments};
 use commands::fault::{self, FaultArguments};
 use commands::run::{self, RunArguments};
+use commands::status::{self, StatusArguments};
+use commands::top::{self, TopArguments};
 use commands::world::{self, WorldArguments};
 
 /// Fault tolerance for component-based robots, declared in XML.
@@ -28,6 +31,12 @@ enum Command {
     Check(CheckArguments),
     /// Run one application, or several in one container.
     Run(Box<RunArguments>),
+    /// Show how a running application is.
+    Status(StatusArguments),
+    /// Watch a running application on the terminal, and act on it by keys.
+    Top(TopArguments),
+    /// List, show, reset, replace and stop components of a running application.
+    Component(ComponentArguments),
     /// List, show, clear and inject faults of a running application.
     Fault(FaultArguments),
     /// Measure how good Steadfast is at what it does.
@@ -50,6 +59,9 @@ fn main() -> ExitCode {
     match Arguments::parse().command {
         Command::Check(arguments) => check::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Status(arguments) => status::run(&arguments),
+        Command::Top(arguments) => top::run(&arguments),
+        Command::Component(arguments) => component::run(&arguments),
         Command::Fault(arguments) => fault::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Host => container::host::host_main(),

@@ -17,13 +17,13 @@ use std::time::{Duration, Instant};
 use robot_simulation::Simulation;
 use system_model::specification::ApplicationSpecification;
 
-use crate::assembly::{Assembly, assemble_together};
+use crate::assembly::{Assembly, Link, assemble_together};
 use crate::component::{ComponentCell, Environment};
 use crate::control::RunningSystem;
 use crate::event_log::{Event, EventWriter};
 use crate::lane::{Crew, Lane, remaining};
 use crate::library::PortDescription;
-use crate::status::ComponentStatus;
+use crate::status::{ComponentStatus, Meter};
 use crate::summary::{ApplicationSummary, ComponentSummary, Summary, application_state};
 use crate::supervision::{ManagerThreads, Supervisor};
 use crate::world::World;
@@ -58,6 +58,9 @@ pub struct System {
     components: Arc<[Arc<ComponentCell>]>,
     interfaces: Arc<[Vec<PortDescription>]>,
     statuses: Vec<Arc<ComponentStatus>>,
+    meter: Arc<Meter>,
+    links: Arc<[Link]>,
+    began: Instant,
     crew: Arc<Crew>,
     /// Each with the numbers of the components that it runs.
     lanes: Vec<(Arc<Lane>, Vec<usize>)>,
@@ -80,6 +83,7 @@ impl System {
         simulation: Option<Simulation>,
         mut options: RunOptions,
     ) -> Result<Self, StartError> {
+        let began = Instant::now();
         let real = options.clock == ClockKind::Real;
         let supervised = options.supervised.clone();
         let outside = supervised.as_ref().and_then(|it| it.world().cloned());
@@ -111,8 +115,10 @@ impl System {
             statuses,
             executors,
             interfaces,
+            links,
             ..
         } = assembly;
+        let meter = real_time::meter(&statuses, &executors);
         let mut system = Self {
             applications: applications.names(),
             specification: applications.specification,
@@ -124,6 +130,9 @@ impl System {
             components: components.into(),
             interfaces: interfaces.into(),
             statuses,
+            meter: Arc::new(meter),
+            links: links.into(),
+            began,
             crew: Crew::new()?,
             lanes: Vec::new(),
             supervisor: Arc::new(supervisor),
@@ -171,6 +180,10 @@ impl System {
     /// What an operator may ask of it while it runs.
     pub fn control(&self) -> RunningSystem {
         RunningSystem {
+            meter: Arc::clone(&self.meter),
+            links: Arc::clone(&self.links),
+            began: self.began,
+            restarts: self.restarts(),
             specification: self.specification.clone(),
             applications: self.applications.clone(),
             interfaces: Arc::clone(&self.interfaces),
@@ -184,8 +197,14 @@ impl System {
         self.world.as_ref()
     }
 
-    /// Why the run is over, if it is: waits at most `limit` for that.
+    fn restarts(&self) -> u32 {
+        (self.options.supervised.as_ref()).map_or(0, |it| it.restarts())
+    }
+
+    /// Why the run is over, if it is: waits at most `limit` for that. Rates and loads are counted
+    /// between such waits.
     pub fn wait(&self, limit: Duration) -> Option<&'static str> {
+        self.meter.look(self.now());
         match self.options.clock {
             ClockKind::Simulated => {
                 let ended = self.lanes.iter().all(|(lane, _)| lane.wait(limit));
@@ -298,7 +317,7 @@ impl System {
                 .iter()
                 .map(|status| (status.name.clone(), ComponentSummary::of(status)))
                 .collect(),
-            restarts: (self.options.supervised.as_ref()).map_or(0, |it| it.restarts()),
+            restarts: self.restarts(),
             robot: self.world.as_ref().map(|world| world.summary()),
         }
     }

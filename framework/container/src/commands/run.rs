@@ -1,7 +1,7 @@
 //! `steadfast run`: brings applications up, watches them, stops them in order.
 
 mod applications;
-mod duration;
+pub(in crate::commands) mod duration;
 mod failure;
 mod live;
 mod models;
@@ -186,13 +186,13 @@ fn listen(system: &System, watcher: &Watcher) -> Option<Server> {
         Ok(server) => {
             let path = server.path().display();
             watcher.say(&format!(
-                "notice: 'steadfast fault' finds this run at {path}"
+                "notice: 'steadfast status', 'top', 'component' and 'fault' find this run at {path}"
             ));
             Some(server)
         }
         Err(error) => {
             watcher.say(&format!(
-                "notice: 'steadfast fault' cannot reach this run: {error}"
+                "notice: 'steadfast status' and its like cannot reach this run: {error}"
             ));
             None
         }

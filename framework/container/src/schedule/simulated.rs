@@ -113,6 +113,7 @@ impl Simulated {
             self.due_ns[index] = end_ns + SIMULATED_CYCLE_NS;
             return;
         }
+        executor.status.add_busy_ns(end_ns - now_ns);
         let next_ns = self.due_ns[index] + nanoseconds(executor.period);
         self.due_ns[index] = next_ns.max(end_ns);
         if end_ns > next_ns {
