@@ -76,7 +76,7 @@ fn a_status_tells_how_components_and_container_are() {
     );
     let listed = operator.json(&["component", "list"])["components"].clone();
     assert_eq!(listed.as_object().map(serde_json::Map::len), Some(2));
-    application.interrupt(run).ended_well();
+    let _outcome = application.interrupt(run).ended_well();
 }
 
 #[test]
@@ -154,7 +154,7 @@ fn orders_that_make_no_sense_are_refused_with_a_reason() {
         assert_eq!(finished.code, Some(1), "{finished}");
         assert!(finished.stderr.contains(reason), "{reason}: {finished}");
     }
-    application.interrupt(run).ended_well();
+    let _outcome = application.interrupt(run).ended_well();
     let gone = operator.run(&["status"]);
     assert_eq!(gone.code, Some(2), "{gone}");
     assert!(gone.stderr.contains("no application is running"), "{gone}");

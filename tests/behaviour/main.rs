@@ -17,6 +17,7 @@ mod hangs;
 mod injections;
 mod isolation;
 mod life_cycle;
+mod live_metrics;
 mod live_orders;
 mod live_view;
 mod manager_ports;

@@ -19,6 +19,7 @@ pub mod host;
 pub mod injection;
 pub mod lane;
 pub mod library;
+pub mod metrics;
 pub mod outer_supervision;
 pub mod persistence;
 pub mod port;

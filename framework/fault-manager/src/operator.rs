@@ -36,6 +36,12 @@ impl FaultManager {
                 _ => None,
             };
         }
+        // What will never make sense before what does not at the moment.
+        if let OperatorOrder::Replace { secondary } = order
+            && let Some(reason) = self.unknown_secondary(component, secondary)
+        {
+            return Some(reason);
+        }
         if self.emergency.is_some() {
             return Some(format!(
                 "an emergency stop is latched, {name} may not move; \
@@ -52,13 +58,8 @@ impl FaultManager {
                 "{name} is being {doing} for fault {fault}; try again when that is over"
             ));
         }
-        if let Some(wanted) = self.lacks(component) {
-            return Some(format!("{name} needs {wanted}; reset that first"));
-        }
-        match order {
-            OperatorOrder::Replace { secondary } => self.unknown_secondary(component, secondary),
-            OperatorOrder::Reset | OperatorOrder::Stop => None,
-        }
+        let wanted = self.lacks(component)?;
+        Some(format!("{name} needs {wanted}; reset that first"))
     }
 
     /// Carries an order out, unless it makes no sense any more: then nothing happens.

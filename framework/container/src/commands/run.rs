@@ -5,6 +5,7 @@ pub(in crate::commands) mod duration;
 mod failure;
 mod live;
 mod models;
+mod observers;
 mod report;
 mod supervised;
 mod words;
@@ -30,6 +31,7 @@ use super::problems;
 pub(super) use failure::{Failed, exit_code};
 use failure::{refused, unwritable};
 use live::Watcher;
+use observers::ObserverArguments;
 use supervised::SupervisionArguments;
 
 /// How often a person's view is refreshed: fast enough to look alive, slow enough to be read.
@@ -50,7 +52,7 @@ const LIBRARY_PATH_VARIABLE: &str = "STEADFAST_LIBRARY_PATH";
   3  a library is missing, no component, or for another container
   4  ports or connections do not fit the libraries
   5  a component refused to be initialised or started, or hung in it
-  6  the system refused threads or memory
+  6  the system refused threads or memory, or an address to listen at
   7  --supervised: the container failed more often than --restarts allows")]
 pub struct RunArguments {
     /// Application profiles (`package_profile` or `application_profile`), run in one container
@@ -96,6 +98,8 @@ pub struct RunArguments {
     #[arg(long)]
     fresh: bool,
     #[command(flatten)]
+    observers: ObserverArguments,
+    #[command(flatten)]
     supervision: SupervisionArguments,
 }
 
@@ -132,6 +136,7 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
     };
     let stop_asked = watch_signals()?;
     let (echo, lines) = bounded(ECHO_QUEUE);
+    let (observers, echo) = arguments.observers.prepare(echo)?;
     let options = RunOptions {
         clock: match arguments.clock {
             ClockArgument::Real => ClockKind::Real,
@@ -153,6 +158,7 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
     let system = started.map_err(|error| refused(&error))?;
     let mut watcher = Watcher::new(system.name(), lines);
     let server = listen(&system, &watcher);
+    let observers = observers.start(&system, &watcher);
     let reason = loop {
         if stop_asked.load(Ordering::Acquire) {
             break "stopped";
@@ -165,7 +171,7 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
     if let Some(supervised) = supervised {
         supervised.stops();
     }
-    drop(server);
+    drop((server, observers));
     let world = system.world().cloned();
     let (summary, log_error) = system.stop(reason);
     watcher.finish();

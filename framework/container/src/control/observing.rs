@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use fault_manager::Condition;
 use system_model::rules::Preload;
-use system_model::specification::{PortDirection, PortKind};
+use system_model::specification::{PortDirection, PortKind, PortReference};
 
 use super::RunningSystem;
 use super::view::{
-    ComponentInfo, ComponentView, ContainerView, FaultView, PortView, StandbyView, SystemView,
-    condition_name, level,
+    ComponentInfo, ComponentView, ContainerView, FaultView, LinkView, PortView, StandbyView,
+    SystemView, condition_name, level,
 };
 use crate::assembly::Link;
 use crate::library::PortDescription;
@@ -123,6 +123,20 @@ impl RunningSystem {
         }
     }
 
+    /// The connections of data ports.
+    pub fn links(&self) -> Vec<LinkView> {
+        let end = |end: &PortReference| {
+            let component = &self.specification.components[end.component].name;
+            format!("{component}.{}", end.port)
+        };
+        let view = |link: &Link| LinkView {
+            source: end(&link.source),
+            target: end(&link.target),
+            dropped: link.drops.count(),
+        };
+        self.links.iter().map(view).collect()
+    }
+
     /// The application of a component.
     fn application_of(&self, index: usize) -> &str {
         let applications = self.applications.iter();
@@ -158,9 +172,7 @@ impl RunningSystem {
         let connections = self.specification.connections.iter();
         let others = connections.filter_map(|connection| {
             let (source, target) = (&connection.source, &connection.target);
-            let is_own = |end: &system_model::specification::PortReference| {
-                end.component == index && end.port == port.name
-            };
+            let is_own = |end: &PortReference| end.component == index && end.port == port.name;
             match (is_own(source), is_own(target)) {
                 (true, _) => Some(target),
                 (_, true) => Some(source),

@@ -135,6 +135,17 @@ pub struct PortView {
     pub dropped: u64,
 }
 
+/// Data that were dropped between an output and an input: `component.port` of both.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct LinkView {
+    /// The output.
+    pub source: String,
+    /// The input.
+    pub target: String,
+    /// So many.
+    pub dropped: u64,
+}
+
 /// One fault, in short.
 #[derive(Debug, Clone, Serialize)]
 pub struct FaultView {
