@@ -22,6 +22,7 @@ pub mod library;
 pub mod outer_supervision;
 pub mod persistence;
 pub mod port;
+pub mod recording;
 pub mod schedule;
 mod scheduling;
 pub mod status;

@@ -5,6 +5,7 @@ mod applications;
 mod options;
 mod persistence;
 mod real_time;
+mod recording;
 mod stages;
 mod start_error;
 mod supervise;
@@ -23,6 +24,7 @@ use crate::control::RunningSystem;
 use crate::event_log::{Event, EventWriter};
 use crate::lane::{Crew, Lane, remaining};
 use crate::library::PortDescription;
+use crate::recording::RecordingThread;
 use crate::status::ComponentStatus;
 use crate::summary::{ApplicationSummary, ComponentSummary, Summary, application_state};
 use crate::supervision::{ManagerThreads, Supervisor};
@@ -66,6 +68,7 @@ pub struct System {
     manager_threads: ManagerThreads,
     persistence: Persistence,
     writer: EventWriter,
+    recording: Option<RecordingThread>,
 }
 
 impl System {
@@ -84,7 +87,8 @@ impl System {
         let supervised = options.supervised.clone();
         let outside = supervised.as_ref().and_then(|it| it.world().cloned());
         let world = outside.or_else(|| simulation.map(|it| Arc::new(World::new(it, real))));
-        let (events, writer) = options.open_events()?;
+        let (recorder, recorded) = options.recorder();
+        let (events, writer) = options.open_events(recorded)?;
         let run_time = supervised.as_ref().map(|it| it.run_time());
         let environment =
             (options.clock).environment(events, world.clone(), run_time.unwrap_or_default());
@@ -105,6 +109,9 @@ impl System {
         inject(&injections, &assembly, &environment).map_err(StartError::Assembly)?;
         let (supervisor, wanted) =
             supervise(&applications, &assembly, &environment).map_err(StartError::Assembly)?;
+        let recording = recorder
+            .map(|it| recording::record(it, &applications, &assembly, &environment, &options));
+        let recording = recording.transpose()?;
         let persistence = Persistence::new(&applications, &assembly.factories);
         let Assembly {
             components,
@@ -130,6 +137,7 @@ impl System {
             manager_threads: ManagerThreads::default(),
             persistence,
             writer,
+            recording,
         };
         if let Err(error) = system.bring_up() {
             // The refusal counts; a log that cannot be written either does not change it.
@@ -206,7 +214,7 @@ impl System {
 
     /// Stops everything in order and says what the run came to.
     pub fn stop(mut self, reason: &'static str) -> (Summary, Option<std::io::Error>) {
-        let summary = self.summary(reason);
+        let mut summary = self.summary(reason);
         let deadline = Instant::now() + STOP_LIMIT;
         self.manager_threads.stop(&self.supervisor);
         for (lane, _) in &self.lanes {
@@ -223,6 +231,7 @@ impl System {
         self.shut_down(remaining(deadline).max(STOP_LIMIT / 3));
         self.persistence.end(&self.environment);
         self.record_end(reason);
+        summary.recording = self.recording.take().map(RecordingThread::finish);
         (summary, self.close().err())
     }
 
@@ -239,6 +248,10 @@ impl System {
     }
 
     fn close(self) -> std::io::Result<()> {
+        if let Some(recording) = self.recording {
+            // Of a run that did not start: what there is of it tells why.
+            let _not_summed_up = recording.finish();
+        }
         self.crew.dismiss();
         self.environment.events.finish();
         self.writer.close()
@@ -300,6 +313,7 @@ impl System {
                 .collect(),
             restarts: (self.options.supervised.as_ref()).map_or(0, |it| it.restarts()),
             robot: self.world.as_ref().map(|world| world.summary()),
+            recording: None,
         }
     }
 }

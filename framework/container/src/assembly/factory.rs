@@ -177,6 +177,7 @@ fn unconnected(port: &PortDescription) -> PortEnd {
             size,
             connections: Vec::new(),
             fault: None,
+            recorder: None,
         }),
         (PortKind::Service, PortDirection::Output) => PortEnd::Required(Calls {
             methods: Vec::new(),

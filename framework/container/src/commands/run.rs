@@ -5,6 +5,7 @@ mod duration;
 mod failure;
 mod live;
 mod models;
+mod recording;
 mod report;
 mod supervised;
 mod words;
@@ -30,6 +31,7 @@ use super::problems;
 pub(super) use failure::{Failed, exit_code};
 use failure::{refused, unwritable};
 use live::Watcher;
+use recording::RecordingArguments;
 use supervised::SupervisionArguments;
 
 /// How often a person's view is refreshed: fast enough to look alive, slow enough to be read.
@@ -97,6 +99,8 @@ pub struct RunArguments {
     fresh: bool,
     #[command(flatten)]
     supervision: SupervisionArguments,
+    #[command(flatten)]
+    recording: RecordingArguments,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -147,6 +151,7 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
             // A container that goes on where another has died goes on from what that has left.
             fresh: arguments.fresh && supervised.as_ref().is_none_or(|it| it.restarts() == 0),
         },
+        recording: arguments.recording.options(),
         supervised: supervised.clone(),
     };
     let started = System::start(applications, simulation, options);
@@ -177,7 +182,15 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         let picture = picture.map_err(|error| unwritable(Some(path), &error))?;
         write(path, picture.as_bytes())?;
     }
-    conclude(arguments, &summary)
+    conclude(arguments, &summary)?;
+    let recording = summary.recording.as_ref();
+    match recording.and_then(|it| it.failure.clone()) {
+        Some(text) => Err(Failed {
+            code: exit_code::FILE,
+            text,
+        }),
+        None => Ok(()),
+    }
 }
 
 /// Lets an operator ask and command by `steadfast fault`. The robot runs without that, too.

@@ -244,6 +244,15 @@ impl Services {
         }
         let mut answer = Status::SUCCESS;
         let fault = output.fault;
+        if let Some(recorder) = &mut output.recorder {
+            if !data.copy_to(&mut recorder.scratch) {
+                return self.bad_pointer("raise");
+            }
+            let seen_ns = self.environment.clock.cycle_time_ns(self.cycle_ns);
+            recorder
+                .port
+                .record(seen_ns, self.cycle_ns, &recorder.scratch);
+        }
         for (sender, wake) in &mut output.connections {
             match sender.send(self.cycle_ns, self.incarnation, |bytes| data.copy_to(bytes)) {
                 Sent::Queued => wake.wake(),
