@@ -5,11 +5,13 @@
 //! data and events in the order of time, makes JSON of them and writes. Where time is real a ring
 //! that is full drops the newest datum and counts it; in simulated time its writer waits.
 
+mod black_box;
 mod diagnosis;
 mod options;
 mod port_recorder;
 mod record_file;
 mod recorder;
+mod sinks;
 mod thread;
 
 pub use options::{BlackBoxOptions, RecordingOptions};

@@ -1,17 +1,18 @@
 //! A recording that is being prepared: ports are added, then it starts.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use crossbeam::channel::{Receiver, Sender, bounded};
-use recording::Layout;
+use recording::{Layout, WriteError};
 use system_model::data_type::DataType;
 
+use super::black_box::BlackBox;
 use super::diagnosis::Diagnosis;
 use super::options::RecordingOptions;
 use super::port_recorder::{PortRecorder, Track, ring};
 use super::record_file::{RecordFile, RecordedPort};
-use super::thread::{RecordingThread, Sinks};
+use super::sinks::Sinks;
+use super::thread::RecordingThread;
 use crate::component::Environment;
 use crate::event_log::Event;
 use crate::system::StartError;
@@ -89,18 +90,18 @@ impl Recorder {
         components: impl Iterator<Item = (&'name str, &'name str)>,
         about: Vec<(&'static str, String)>,
     ) -> Result<RecordingThread, StartError> {
-        let unwritable = |path: PathBuf, reason: String| StartError::Output {
-            path,
-            error: std::io::Error::other(reason),
+        let unwritable = |error: WriteError| StartError::Output {
+            path: error.path,
+            error: std::io::Error::other(error.reason),
         };
         let ports: Arc<[RecordedPort]> = self.ports.into();
-        let file = self.options.file.as_ref().map(|path| {
-            RecordFile::create(path, &about, Arc::clone(&ports))
-                .map_err(|error| unwritable(error.path, error.reason))
-        });
-        let sinks = Sinks {
-            file: file.transpose()?,
-        };
+        let path = self.options.file.as_ref();
+        let file = path.map(|path| RecordFile::create(path, &about, Arc::clone(&ports)));
+        let file = file.transpose().map_err(unwritable)?;
+        let options = self.options.black_box;
+        let black_box = options.map(|options| BlackBox::new(options, Arc::clone(&ports), about));
+        let black_box = black_box.transpose().map_err(unwritable)?;
+        let sinks = Sinks::new(file, black_box);
         RecordingThread::start(
             Arc::clone(environment),
             self.wake,

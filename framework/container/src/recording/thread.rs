@@ -9,12 +9,13 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crossbeam::channel::Receiver;
-use recording::{Topic, WriteError};
+use recording::Topic;
 use serde::Serialize;
 
 use super::diagnosis::Diagnosis;
 use super::port_recorder::Track;
-use super::record_file::{Entry, RecordFile, RecordedPort, Source};
+use super::record_file::{Entry, RecordedPort, Source};
+use super::sinks::Sinks;
 use crate::component::Environment;
 use crate::event_log::{Event, Line};
 use crate::wake::Wake;
@@ -30,13 +31,6 @@ const FLUSH_PERIOD: Duration = Duration::from_secs(1);
 /// of a component changes.
 const DIAGNOSTICS_PERIOD_NS: u64 = 1_000_000_000;
 
-/// Where messages go.
-#[derive(Debug, Default)]
-pub(super) struct Sinks {
-    /// Everything.
-    pub(super) file: Option<RecordFile>,
-}
-
 /// What a recording came to.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct RecordingSummary {
@@ -45,6 +39,9 @@ pub struct RecordingSummary {
     pub file: Option<PathBuf>,
     /// Messages in it.
     pub messages: u64,
+    /// The files of the black box that were begun; older ones may have been removed since.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub black_box: Vec<PathBuf>,
     /// Data that were not recorded, because they came faster than they could be written.
     pub dropped: u64,
     /// The same by topic, for those that lost any.
@@ -94,7 +91,6 @@ impl RecordingThread {
             diagnostics_due_ns: 0,
             messages: 0,
             said_dropped: false,
-            failure: None,
         };
         let (asked, woken) = (Arc::clone(&shared), Arc::clone(&wake));
         let thread = std::thread::Builder::new()
@@ -147,7 +143,6 @@ struct Writing {
     diagnostics_due_ns: u64,
     messages: u64,
     said_dropped: bool,
-    failure: Option<WriteError>,
 }
 
 /// What is next in the order of time; events come before data of the same time.
@@ -215,7 +210,7 @@ impl Writing {
     }
 
     fn write_datum(&mut self, index: usize) {
-        let (sinks, failure) = (&mut self.sinks, &mut self.failure);
+        let sinks = &mut self.sinks;
         self.tracks[index].take(|datum| {
             let entry = Entry {
                 source: Source::Port(index),
@@ -223,7 +218,7 @@ impl Writing {
                 publish_ns: datum.written_ns,
                 content: datum.bytes,
             };
-            sinks.write(&entry, failure);
+            sinks.write(&entry);
         });
         self.messages += 1;
     }
@@ -247,7 +242,10 @@ impl Writing {
                 });
                 self.write_topic(Topic::States, t_ns, &state);
             }
-            Event::Verdict(verdict) => self.write_topic(Topic::Verdicts, t_ns, verdict),
+            Event::Verdict(verdict) => {
+                self.write_topic(Topic::Verdicts, t_ns, verdict);
+                self.sinks.judge(t_ns, verdict);
+            }
             _ => {}
         }
         if changes {
@@ -264,7 +262,7 @@ impl Writing {
             publish_ns: time_ns,
             content: &content,
         };
-        self.sinks.write(&entry, &mut self.failure);
+        self.sinks.write(&entry);
         self.messages += 1;
     }
 
@@ -288,10 +286,8 @@ impl Writing {
     }
 
     fn flush(&mut self) {
-        let failed_before = self.failure.is_some();
-        self.sinks.flush(&mut self.failure);
-        if !failed_before && let Some(failure) = &self.failure {
-            self.notice(failure.to_string());
+        if let Some(failure) = self.sinks.flush() {
+            self.notice(failure);
         }
         let dropped = self.dropped();
         if dropped > 0 && !self.said_dropped {
@@ -312,40 +308,7 @@ impl Writing {
         }
     }
 
-    fn finish(mut self) -> RecordingSummary {
-        let mut summary = self.sinks.finish(&mut self.failure);
-        summary.failure = self.failure.map(|failure| failure.to_string());
-        summary
-    }
-}
-
-impl Sinks {
-    /// Writes a message; after a failure nothing more.
-    fn write(&mut self, entry: &Entry<'_>, failure: &mut Option<WriteError>) {
-        if let Some(file) = &mut self.file
-            && failure.is_none()
-        {
-            *failure = file.write(entry).err();
-        }
-    }
-
-    fn flush(&mut self, failure: &mut Option<WriteError>) {
-        if let Some(file) = &mut self.file
-            && failure.is_none()
-        {
-            *failure = file.flush().err();
-        }
-    }
-
-    fn finish(&mut self, failure: &mut Option<WriteError>) -> RecordingSummary {
-        let mut summary = RecordingSummary::default();
-        if let Some(file) = self.file.take() {
-            summary.messages = file.writer().messages();
-            summary.file = Some(file.writer().path().to_owned());
-            if failure.is_none() {
-                *failure = file.finish().err();
-            }
-        }
-        summary
+    fn finish(self) -> RecordingSummary {
+        self.sinks.finish()
     }
 }

@@ -88,6 +88,14 @@ fn recorded(output: &mut impl Write, recording: &RecordingSummary) -> io::Result
             recording.messages
         )?;
     }
+    if let Some(last) = recording.black_box.last() {
+        writeln!(
+            output,
+            "  black box: {} files, the last is {}",
+            recording.black_box.len(),
+            last.display()
+        )?;
+    }
     if recording.dropped > 0 {
         let topics = recording.dropped_by_topic.iter();
         let topics: Vec<String> = topics
