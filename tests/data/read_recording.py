@@ -3,18 +3,34 @@
 import json
 import sys
 
-from mcap.reader import NonSeekingReader, make_reader
+from mcap.reader import make_reader
+from mcap.records import Channel, Message, Schema
+from mcap.stream_reader import StreamReader
 
 path, whole = sys.argv[1], sys.argv[2] == "whole"
+
+
+def streamed(file):
+    """The messages of a file from its beginning on: one that was cut has no index at its end."""
+    schemas, channels = {}, {}
+    for record in StreamReader(file).records:
+        if isinstance(record, Schema):
+            schemas[record.id] = record
+        elif isinstance(record, Channel):
+            channels[record.id] = record
+        elif isinstance(record, Message):
+            channel = channels[record.channel_id]
+            yield schemas[channel.schema_id], channel, record
+
+
 with open(path, "rb") as file:
-    # A file that was cut has no index at its end: it is read from its beginning.
-    reader = make_reader(file) if whole else NonSeekingReader(file)
     found = {"statistics": None, "topics": {}, "metadata": {}}
     if whole:
+        reader = make_reader(file)
         found["statistics"] = reader.get_summary().statistics.message_count
         found["metadata"] = {it.name: it.metadata for it in reader.iter_metadata()}
     try:
-        for schema, channel, message in reader.iter_messages(log_time_order=whole):
+        for schema, channel, message in reader.iter_messages() if whole else streamed(file):
             topic = found["topics"].setdefault(
                 channel.topic,
                 {

@@ -4,5 +4,6 @@ pub mod bench;
 pub mod check;
 pub mod fault;
 pub mod problems;
+pub mod replay;
 pub mod run;
 pub mod world;

@@ -11,6 +11,7 @@ use clap::{Parser, Subcommand};
 use commands::bench::{self, BenchArguments};
 use commands::check::{self, CheckArguments};
 use commands::fault::{self, FaultArguments};
+use commands::replay::{self, ReplayArguments};
 use commands::run::{self, RunArguments};
 use commands::world::{self, WorldArguments};
 
@@ -28,6 +29,8 @@ enum Command {
     Check(CheckArguments),
     /// Run one application, or several in one container.
     Run(Box<RunArguments>),
+    /// Play a recording again: to a component, or to the rules alone.
+    Replay(ReplayArguments),
     /// List, show, clear and inject faults of a running application.
     Fault(FaultArguments),
     /// Measure how good Steadfast is at what it does.
@@ -50,6 +53,7 @@ fn main() -> ExitCode {
     match Arguments::parse().command {
         Command::Check(arguments) => check::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Replay(arguments) => replay::run(&arguments),
         Command::Fault(arguments) => fault::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Host => container::host::host_main(),

@@ -90,8 +90,13 @@ impl System {
         let (recorder, recorded) = options.recorder();
         let (events, writer) = options.open_events(recorded)?;
         let run_time = supervised.as_ref().map(|it| it.run_time());
-        let environment =
-            (options.clock).environment(events, world.clone(), run_time.unwrap_or_default());
+        let score = options.score.clone();
+        let environment = (options.clock).environment(
+            events,
+            world.clone(),
+            run_time.unwrap_or_default(),
+            score.clone(),
+        );
         let environment = Arc::new(environment);
         let applications = Applications::new(applications);
         let specification = &applications.specification;
@@ -109,6 +114,12 @@ impl System {
         inject(&injections, &assembly, &environment).map_err(StartError::Assembly)?;
         let (supervisor, wanted) =
             supervise(&applications, &assembly, &environment).map_err(StartError::Assembly)?;
+        if let Some(score) = &score {
+            score
+                .bind(&applications.specification, &assembly)
+                .map_err(StartError::Assembly)?;
+            environment.clock.advance_to(score.first_ns());
+        }
         let recording = recorder
             .map(|it| recording::record(it, &applications, &assembly, &environment, &options));
         let recording = recording.transpose()?;

@@ -98,6 +98,13 @@ impl Reader {
         &self.about
     }
 
+    /// The channels that are known so far: in files of steadfast all of them, when the first message
+    /// has been read.
+    pub fn channels(&self) -> Vec<Arc<Channel>> {
+        let channels = self.channels.values();
+        channels.map(|(channel, _)| Arc::clone(channel)).collect()
+    }
+
     fn advance(&mut self) -> Result<Option<Message>, ReadError> {
         while !self.ended {
             let step = match self.reader.next_event() {

@@ -27,7 +27,8 @@ fn name(path: &Path) -> &str {
 
 #[test]
 fn has_what_lies_around_a_fault_and_nothing_else() {
-    let (outcome, files) = run(&counting(), &["--clock", "simulated", "--for", "1s"]);
+    let application = counting();
+    let (outcome, files) = run(&application, &["--clock", "simulated", "--for", "1s"]);
     assert_eq!(
         files.iter().map(|it| name(it)).collect::<Vec<_>>(),
         ["blackbox-000001-culprit_panic.mcap"]
@@ -36,7 +37,6 @@ fn has_what_lies_around_a_fault_and_nothing_else() {
     let confirmed_ns = verdict["confirmed_ns"].as_u64().expect("a time");
     let topics = messages(&files[0]);
     let numbers = &topics["/counter/output"];
-    // Thirty cycles of 10 ms are what there was before; those of 200 ms are in it, and of 100 ms after.
     let times: Vec<u64> = numbers.iter().map(|it| it.t_ns).collect();
     assert_eq!(times.first(), Some(&(confirmed_ns - 200_000_000)));
     assert_eq!(times.last(), Some(&(confirmed_ns + 100_000_000)));
@@ -57,7 +57,7 @@ fn has_what_lies_around_a_fault_and_nothing_else() {
 
 #[test]
 fn never_loses_the_second_fault_of_a_burst() {
-    // It panics again 50 ms after it was reset, and once more after a second.
+    // The first one comes at 300 ms, and its file ends at 400 ms.
     let application = counting().injections(
         "<inject at='350ms' component='recorder' fault='panic'/>\
          <inject at='900ms' component='recorder' fault='panic'/>",
@@ -71,9 +71,11 @@ fn never_loses_the_second_fault_of_a_burst() {
         ids.dedup();
         ids
     };
-    assert_eq!(
-        files.iter().map(ids).collect::<Vec<_>>(),
-        [vec![1, 2], vec![3]]
+    let ids: Vec<Vec<u64>> = files.iter().map(ids).collect();
+    // What becomes of the second one later is in the file of the third, too.
+    assert!(
+        ids.len() == 2 && ids[0] == [1, 2] && ids[1].contains(&3),
+        "{ids:?}"
     );
     assert_eq!(
         outcome.summary()["recording"]["black_box"]

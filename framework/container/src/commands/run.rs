@@ -1,6 +1,6 @@
 //! `steadfast run`: brings applications up, watches them, stops them in order.
 
-mod applications;
+pub(super) mod applications;
 mod duration;
 mod failure;
 mod live;
@@ -28,8 +28,9 @@ use robot_simulation::Simulation;
 use system_profile::{Problem, load_world};
 
 use super::problems;
-pub(super) use failure::{Failed, exit_code};
-use failure::{refused, unwritable};
+use applications::Sources;
+use failure::unwritable;
+pub(super) use failure::{Failed, exit_code, refused};
 use live::Watcher;
 use recording::RecordingArguments;
 use supervised::SupervisionArguments;
@@ -111,6 +112,18 @@ enum ClockArgument {
     Simulated,
 }
 
+impl RunArguments {
+    /// The files that say what is run.
+    fn sources(&self) -> Sources<'_> {
+        Sources {
+            applications: &self.applications,
+            rules: &self.rules,
+            inject: &self.inject,
+            search_path: &self.search_path,
+        }
+    }
+}
+
 /// Runs applications to their end.
 pub fn run(arguments: &RunArguments) -> ExitCode {
     let ended = match arguments.supervision.supervised {
@@ -129,7 +142,7 @@ pub fn run(arguments: &RunArguments) -> ExitCode {
 
 fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
     let supervised = supervised::join(arguments)?;
-    let applications = applications::load(arguments)?;
+    let applications = applications::load(&arguments.sources())?;
     let simulation = match supervised.as_ref().and_then(|it| it.world()) {
         Some(_elsewhere) => None,
         None => simulate(&applications, arguments.seed)?,
@@ -145,12 +158,13 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         seed: arguments.seed,
         events: arguments.events.clone(),
         echo: Some(echo),
-        libraries: libraries(arguments),
+        libraries: libraries(&arguments.library_path),
         state: StateOptions {
             folder: arguments.state_path.clone(),
             // A container that goes on where another has died goes on from what that has left.
             fresh: arguments.fresh && supervised.as_ref().is_none_or(|it| it.restarts() == 0),
         },
+        score: None,
         recording: arguments.recording.options(),
         supervised: supervised.clone(),
     };
@@ -272,9 +286,9 @@ fn watch_signals() -> Result<Arc<AtomicBool>, Failed> {
 }
 
 /// Where libraries are found and how they are probed.
-fn libraries(arguments: &RunArguments) -> LibraryOptions {
+pub(super) fn libraries(library_path: &[PathBuf]) -> LibraryOptions {
     LibraryOptions {
-        search: LibrarySearch::new(library_folders(&arguments.library_path)),
+        search: LibrarySearch::new(library_folders(library_path)),
         executable: std::env::current_exe().ok(),
     }
 }

@@ -20,6 +20,7 @@ use crate::guard::{ForeignBytes, ForeignBytesMut, ForeignText, HostServices, Req
 use crate::injection::Injections;
 use crate::library::PortDescription;
 use crate::port::{Receiver, Sent};
+use crate::replay::Score;
 use crate::schedule::BusyTime;
 use crate::supervision::{Observations, Scenes};
 use crate::world::World;
@@ -42,6 +43,8 @@ pub struct Environment {
     pub injections: Injections,
     /// The simulated world, if there is one.
     pub world: Option<Arc<World>>,
+    /// The recording that is played instead of components, if one is.
+    pub score: Option<Arc<Score>>,
     /// For how long a component keeps its executor busy, in simulated time.
     pub busy: BusyTime,
 }

@@ -16,6 +16,7 @@ use crate::event_log::{Event, EventLog, EventWriter};
 use crate::injection::{Injections, still_to_come};
 use crate::outer_supervision::Supervised;
 use crate::recording::{Recorder, RecordingOptions};
+use crate::replay::Score;
 use crate::schedule::BusyTime;
 use crate::supervision::{Observations, Scenes};
 use crate::world::World;
@@ -45,6 +46,7 @@ impl ClockKind {
         events: EventLog,
         world: Option<Arc<World>>,
         run_time: Duration,
+        score: Option<Arc<Score>>,
     ) -> Environment {
         Environment {
             clock: match self {
@@ -57,6 +59,7 @@ impl ClockKind {
             injections: Injections::default(),
             scenes: Scenes::default(),
             world,
+            score,
             busy: BusyTime::default(),
         }
     }
@@ -79,6 +82,8 @@ pub struct RunOptions {
     pub libraries: LibraryOptions,
     /// Where checkpoints lie that outlive the container.
     pub state: StateOptions,
+    /// The recording that is played instead of components, in simulated time.
+    pub score: Option<Arc<Score>>,
     /// What is recorded.
     pub recording: RecordingOptions,
     /// The parent that supervises this container, if one does.

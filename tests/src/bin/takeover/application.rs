@@ -65,6 +65,7 @@ pub fn run(plan: &Plan) -> Outcome {
             executable: None,
         },
         state: StateOptions::default(),
+        score: None,
         recording: RecordingOptions::default(),
         supervised: None,
     };

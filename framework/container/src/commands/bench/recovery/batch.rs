@@ -78,6 +78,7 @@ fn measure(arguments: &BatchArguments) -> io::Result<Vec<Row>> {
             executable: std::env::current_exe().ok(),
         },
         state: StateOptions::default(),
+        score: None,
         recording: RecordingOptions::default(),
         supervised: None,
     };
