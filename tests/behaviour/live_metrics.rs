@@ -1,4 +1,5 @@
-//! `steadfast run --metrics`: figures for Prometheus, scraped and parsed.
+//! `steadfast run --metrics`: figures for Prometheus, scraped and parsed; and `--foxglove` in a build
+//! without it.
 
 use std::collections::BTreeMap;
 use std::io::{Read as _, Write as _};
@@ -132,6 +133,17 @@ fn an_address_that_is_taken_is_refused_before_anything_runs() {
     assert_eq!(finished.code, Some(6), "{finished}");
     assert!(
         finished.stderr.contains("choose another port"),
+        "{finished}"
+    );
+}
+
+#[test]
+fn foxglove_is_refused_in_words_by_a_build_without_it() {
+    let outcome = application().run(&["--for", "1s", "--foxglove"]);
+    let finished = outcome.finished();
+    assert_eq!(finished.code, Some(6), "{finished}");
+    assert!(
+        finished.stderr.contains("--features container/foxglove"),
         "{finished}"
     );
 }

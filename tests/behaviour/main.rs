@@ -25,6 +25,7 @@ mod memory;
 mod persistence;
 mod ports;
 mod readme;
+mod recordings;
 mod recovery;
 mod reference_model;
 mod reference_robot;

@@ -6,6 +6,7 @@ pub mod component;
 pub mod fault;
 mod operator;
 pub mod problems;
+pub mod replay;
 pub mod run;
 pub mod status;
 pub mod top;

@@ -23,6 +23,8 @@ pub mod metrics;
 pub mod outer_supervision;
 pub mod persistence;
 pub mod port;
+pub mod recording;
+pub mod replay;
 pub mod schedule;
 mod scheduling;
 pub mod status;

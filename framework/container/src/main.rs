@@ -12,6 +12,7 @@ use commands::bench::{self, BenchArguments};
 use commands::check::{self, CheckArguments};
 use commands::component::{self, ComponentArguments};
 use commands::fault::{self, FaultArguments};
+use commands::replay::{self, ReplayArguments};
 use commands::run::{self, RunArguments};
 use commands::status::{self, StatusArguments};
 use commands::top::{self, TopArguments};
@@ -31,6 +32,8 @@ enum Command {
     Check(CheckArguments),
     /// Run one application, or several in one container.
     Run(Box<RunArguments>),
+    /// Play a recording again: to a component, or to the rules alone.
+    Replay(ReplayArguments),
     /// Show how a running application is.
     Status(StatusArguments),
     /// Watch a running application on the terminal, and act on it by keys.
@@ -59,6 +62,7 @@ fn main() -> ExitCode {
     match Arguments::parse().command {
         Command::Check(arguments) => check::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Replay(arguments) => replay::run(&arguments),
         Command::Status(arguments) => status::run(&arguments),
         Command::Top(arguments) => top::run(&arguments),
         Command::Component(arguments) => component::run(&arguments),

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use container::control::client::{Client, ClientError};
 use container::control::{Answer, Request};
+use indicatif::ProgressBar;
 use serde_json::{Value, json};
 
 use crate::commands::operator::{DONE, Format, REFUSED, Target, unanswered};
@@ -18,6 +19,9 @@ const NOT_OVER: u8 = 4;
 
 /// A reset takes milliseconds, a person does not see less than this.
 const LOOK_PERIOD: Duration = Duration::from_millis(20);
+
+/// What takes longer is a wait for a person, who is told so.
+const WITHOUT_WORDS: Duration = Duration::from_secs(2);
 
 /// How an order ended.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,6 +79,8 @@ fn wait(client: &mut Client, order: &Request, timeout: Duration) -> Result<End, 
     let Some(id) = id else {
         return Ok(End::Refused("the answer names no verdict".to_owned()));
     };
+    let patience = Instant::now() + WITHOUT_WORDS;
+    let mut progress = None;
     loop {
         let verdict = match client.ask(&Request::FaultShow { id })? {
             Answer::Refused(reason) => return Ok(End::Refused(reason)),
@@ -85,6 +91,14 @@ fn wait(client: &mut Client, order: &Request, timeout: Duration) -> Result<End, 
         }
         if Instant::now() >= deadline {
             return Ok(End::NotOver(verdict));
+        }
+        if Instant::now() >= patience {
+            // Drawn on a terminal only.
+            progress
+                .get_or_insert_with(|| {
+                    ProgressBar::new_spinner().with_message("waiting until it is carried out")
+                })
+                .tick();
         }
         std::thread::sleep(LOOK_PERIOD);
     }
