@@ -29,6 +29,8 @@ pub(super) struct LiveServer {
     channels: Vec<Arc<RawChannel>>,
     topics: BTreeMap<Topic, Arc<RawChannel>>,
     json: Vec<u8>,
+    /// Channels are its as long as it is there.
+    _context: Arc<Context>,
 }
 
 impl LiveServer {
@@ -68,6 +70,7 @@ impl LiveServer {
             channels: channels.map_err(|error| refused(address, &error))?,
             topics: topics.map_err(|error| refused(address, &error))?,
             json: Vec::new(),
+            _context: context,
         })
     }
 

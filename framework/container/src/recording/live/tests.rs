@@ -172,7 +172,8 @@ fn a_client_negotiates_subscribes_and_gets_messages() {
         publish_ns: log_ns,
         content,
     };
-    server.write(&entry(Source::Port(0), 7, &1.5_f64.to_ne_bytes()));
+    let distance = 1.5_f64.to_ne_bytes();
+    server.write(&entry(Source::Port(0), 7, &distance));
     server.write(&entry(Source::Topic(Topic::Events), 8, b"{}"));
     server.write(&entry(
         Source::Topic(Topic::Diagnostics),
