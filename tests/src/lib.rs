@@ -11,6 +11,7 @@ mod member;
 mod operator;
 mod outcome;
 mod supervised;
+mod terminal;
 mod turn;
 mod watchdog;
 
@@ -22,5 +23,6 @@ pub use member::Member;
 pub use operator::Operator;
 pub use outcome::Outcome;
 pub use supervised::Supervised;
+pub use terminal::Terminal;
 pub use turn::take_turn;
 pub use watchdog::{Finished, Watched, repository, until};

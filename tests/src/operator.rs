@@ -51,12 +51,29 @@ impl Operator {
 
     /// Runs `steadfast fault` with these arguments.
     pub fn fault(&self, arguments: &[&str]) -> Finished {
+        self.run(&[&["fault"], arguments].concat())
+    }
+
+    /// Runs `steadfast` with these arguments.
+    pub fn run(&self, arguments: &[&str]) -> Finished {
+        Watched::spawn(&mut self.command(arguments)).wait(COMMAND_LIMIT)
+    }
+
+    /// `steadfast` with these arguments, where it finds the application.
+    pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(artifacts().join("steadfast"));
+        command.args(arguments).env("XDG_RUNTIME_DIR", &self.folder);
         command
-            .arg("fault")
-            .args(arguments)
-            .env("XDG_RUNTIME_DIR", &self.folder);
-        Watched::spawn(&mut command).wait(COMMAND_LIMIT)
+    }
+
+    /// The JSON that `steadfast` writes with these arguments when all is well.
+    ///
+    /// # Panics
+    /// If it is not.
+    pub fn json(&self, arguments: &[&str]) -> Value {
+        let finished = self.run(&[arguments, &["--format", "json"]].concat());
+        assert_eq!(finished.code, Some(0), "{finished}");
+        serde_json::from_str(&finished.stdout).expect("the answer is JSON")
     }
 
     /// The answer to a request that is not refused.
@@ -64,9 +81,7 @@ impl Operator {
     /// # Panics
     /// If it is.
     pub fn answer(&self, arguments: &[&str]) -> Value {
-        let finished = self.fault(&[arguments, &["--format", "json"]].concat());
-        assert_eq!(finished.code, Some(0), "{finished}");
-        serde_json::from_str(&finished.stdout).expect("the answer is JSON")
+        self.json(&[&["fault"], arguments].concat())
     }
 
     /// All faults.

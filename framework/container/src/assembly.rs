@@ -18,6 +18,7 @@ use system_model::specification::{
 };
 
 pub(crate) use connect::EVENT_QUEUE;
+pub use connect::Link;
 pub use factory::{Factory, Variant};
 use libraries::Libraries;
 
@@ -86,6 +87,8 @@ pub struct Assembly {
     pub executors: Vec<Executor>,
     /// The types of all data ports, by component and port.
     pub interfaces: Vec<Vec<PortDescription>>,
+    /// The connections of data ports.
+    pub links: Vec<Link>,
 }
 
 /// Assembles an application.
@@ -163,12 +166,13 @@ pub fn assemble_together(
     }
     let executors = executors::group(specification, firsts, &components);
     connect::introduce(&components, &executors);
-    connect::connect(specification, &primaries, &components, &executors);
+    let links = connect::connect(specification, &primaries, &components, &executors);
     Ok(Assembly {
         components,
         statuses,
         factories,
         executors,
+        links,
         interfaces: primaries
             .into_iter()
             .map(|library| library.description.ports)

@@ -3,15 +3,21 @@
 pub mod bench;
 pub mod check;
 pub mod completions;
+pub mod component;
 mod exit_code;
 pub mod fault;
 pub mod man;
 pub mod manual;
 pub mod new;
+mod operator;
 mod output;
 pub mod problems;
+pub mod replay;
 pub mod run;
 pub mod schema;
+pub mod status;
+pub mod top;
+mod words;
 pub mod world;
 
 pub use exit_code::USAGE;

@@ -1,5 +1,5 @@
-//! Talking to a running system: a Unix socket of its owner's, over which faults are listed, shown,
-//! cleared and injected.
+//! Talking to a running system: a Unix socket of its owner's, over which it is looked at, components
+//! are reset, replaced and stopped, and faults are listed, shown, cleared and injected.
 //!
 //! Requests and answers are one JSON object a line ([`protocol`]). The server does no more than
 //! carry them; what they mean is up to the [`Control`] that it is given. Whatever a client sends,
@@ -7,9 +7,12 @@
 
 pub mod client;
 mod folder;
+mod observing;
+mod ordering;
 pub mod protocol;
 mod running;
 mod server;
+pub mod view;
 
 pub use folder::{ControlError, RunningApplication, remove_sockets_of_the_dead, running};
 pub use protocol::{Answer, Request};

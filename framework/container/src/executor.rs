@@ -11,6 +11,7 @@ use crate::component::{ComponentCell, mark_lost};
 use crate::guard::CallLimit;
 use crate::guard::loss::LostThread;
 use crate::lane::Lane;
+use crate::status::ExecutorStatus;
 use crate::supervision::obedience;
 use crate::supervision::{Orders, Supervisor};
 use crate::wake::Wake;
@@ -49,6 +50,8 @@ pub struct Executor {
     pub orders: Arc<Orders>,
     /// Its components, in document order.
     pub members: Vec<Member>,
+    /// What is known of it, for others.
+    pub status: Arc<ExecutorStatus>,
     /// Completed cycles.
     pub cycles: u64,
     /// Steps of the current cycle that have begun: first every member executes, then every member
@@ -70,7 +73,9 @@ impl Executor {
         policy: SchedulingPolicy,
         wake: Arc<Wake>,
     ) -> Self {
+        let status = ExecutorStatus::new(name.clone(), kind, period, priority, policy);
         Self {
+            status: Arc::new(status),
             name,
             kind,
             period,

@@ -11,11 +11,15 @@ use clap::{CommandFactory as _, Parser, Subcommand};
 use commands::bench::{self, BenchArguments};
 use commands::check::{self, CheckArguments};
 use commands::completions::{self, CompletionsArguments};
+use commands::component::{self, ComponentArguments};
 use commands::fault::{self, FaultArguments};
 use commands::man::{self, ManArguments};
 use commands::new::{self, NewArguments};
+use commands::replay::{self, ReplayArguments};
 use commands::run::{self, RunArguments};
 use commands::schema::{self, SchemaArguments};
+use commands::status::{self, StatusArguments};
+use commands::top::{self, TopArguments};
 use commands::world::{self, WorldArguments};
 
 /// Fault tolerance for component-based robots, declared in XML.
@@ -46,6 +50,14 @@ enum Command {
     /// everything in order; a second Ctrl-C ends the process at once. Without rules a component that
     /// fails is reset, at most three times in a minute.
     Run(Box<RunArguments>),
+    /// Play a recording again: to a component, or to the rules alone.
+    Replay(ReplayArguments),
+    /// Show how a running application is.
+    Status(StatusArguments),
+    /// Watch a running application on the terminal, and act on it by keys.
+    Top(TopArguments),
+    /// List, show, reset, replace and stop components of a running application.
+    Component(ComponentArguments),
     /// List, show, clear and inject faults of a running application.
     ///
     /// Talks to `steadfast run` over a socket that only its user may open.
@@ -96,6 +108,10 @@ fn main() -> ExitCode {
     match arguments.command {
         Command::Check(arguments) => check::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Replay(arguments) => replay::run(&arguments),
+        Command::Status(arguments) => status::run(&arguments),
+        Command::Top(arguments) => top::run(&arguments),
+        Command::Component(arguments) => component::run(&arguments),
         Command::Fault(arguments) => fault::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),

@@ -246,7 +246,23 @@ impl Receiver {
 
     /// Data dropped because the reader did not keep up.
     pub fn dropped(&self) -> u64 {
-        let shared = &self.shared;
+        self.drops().count()
+    }
+
+    /// The same for who is not the reader.
+    pub fn drops(&self) -> Drops {
+        Drops(Arc::clone(&self.shared))
+    }
+}
+
+/// How many data of a connection were dropped, readable from any thread at any time.
+#[derive(Debug, Clone)]
+pub struct Drops(Arc<Shared>);
+
+impl Drops {
+    /// So many, because the reader did not keep up.
+    pub fn count(&self) -> u64 {
+        let shared = &self.0;
         shared.overwritten.load(Ordering::Relaxed) + shared.forgotten.load(Ordering::Relaxed)
     }
 }

@@ -1,9 +1,15 @@
 //! What the container knows of each component, readable from any thread at any time.
 
+mod executor;
+mod meter;
+
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, AtomicU64, AtomicUsize, Ordering};
 
 use system_model::life_cycle::LifeCycleState;
+
+pub use executor::ExecutorStatus;
+pub use meter::{Figures, Meter};
 
 /// Figures of one component. Each counter has one writer at a time: the thread inside it.
 #[derive(Debug)]
@@ -18,6 +24,8 @@ pub struct ComponentStatus {
     last_fault: Mutex<Option<String>>,
     /// Whether it runs in a process of its own.
     in_host: AtomicBool,
+    /// Which of its libraries it is of: its own (0) or that of a secondary (from 1).
+    variant: AtomicUsize,
     /// Of an instance that stands by, and is not seen.
     standby: bool,
     /// Bytes that its callbacks have allocated and not freed, where a rule asks.
@@ -51,6 +59,7 @@ impl ComponentStatus {
             faults: AtomicU64::new(0),
             last_fault: Mutex::new(None),
             in_host: AtomicBool::new(false),
+            variant: AtomicUsize::new(0),
             standby: false,
             allocated_bytes: AtomicU64::new(0),
             hangs_until_ns: AtomicU64::new(0),
@@ -94,6 +103,15 @@ impl ComponentStatus {
 
     pub(crate) fn set_in_host(&self, in_host: bool) {
         self.in_host.store(in_host, Ordering::Relaxed);
+    }
+
+    /// Which of its libraries it is of: its own (0) or that of a secondary (from 1).
+    pub fn variant(&self) -> usize {
+        self.variant.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn set_variant(&self, variant: usize) {
+        self.variant.store(variant, Ordering::Relaxed);
     }
 
     /// Which instance of this component it is, counted from 1.

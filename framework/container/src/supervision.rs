@@ -23,6 +23,7 @@ pub use manager_ports::ManagerOutputs;
 pub use models::{Channel, ModelMonitor, Reading, Reference, Sampler};
 pub use monitors::{InputAge, LOOK_PERIOD, MemoryUse, Monitors, OverrunCount, Subject, WorkDone};
 pub use observations::Observations;
+pub use operator::Overview;
 pub use orders::{Order, Orders, Task};
 pub use rehearsal::rehearse;
 pub use scenes::Scenes;

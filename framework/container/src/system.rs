@@ -2,9 +2,11 @@
 
 mod agenda;
 mod applications;
+mod knowledge;
 mod options;
 mod persistence;
 mod real_time;
+mod recording;
 mod stages;
 mod start_error;
 mod supervise;
@@ -17,14 +19,14 @@ use std::time::{Duration, Instant};
 use robot_simulation::Simulation;
 use system_model::specification::ApplicationSpecification;
 
-use crate::assembly::{Assembly, assemble_together};
+use crate::assembly::{Assembly, Link, assemble_together};
 use crate::component::{ComponentCell, Environment};
-use crate::control::RunningSystem;
 use crate::event_log::{Event, EventWriter};
 use crate::lane::{Crew, Lane, remaining};
 use crate::library::PortDescription;
-use crate::status::ComponentStatus;
-use crate::summary::{ApplicationSummary, ComponentSummary, Summary, application_state};
+use crate::recording::RecordingThread;
+use crate::status::{ComponentStatus, Meter};
+use crate::summary::Summary;
 use crate::supervision::{ManagerThreads, Supervisor};
 use crate::world::World;
 
@@ -58,6 +60,9 @@ pub struct System {
     components: Arc<[Arc<ComponentCell>]>,
     interfaces: Arc<[Vec<PortDescription>]>,
     statuses: Vec<Arc<ComponentStatus>>,
+    meter: Arc<Meter>,
+    links: Arc<[Link]>,
+    began: Instant,
     crew: Arc<Crew>,
     /// Each with the numbers of the components that it runs.
     lanes: Vec<(Arc<Lane>, Vec<usize>)>,
@@ -66,6 +71,7 @@ pub struct System {
     manager_threads: ManagerThreads,
     persistence: Persistence,
     writer: EventWriter,
+    recording: Option<RecordingThread>,
 }
 
 impl System {
@@ -80,15 +86,15 @@ impl System {
         simulation: Option<Simulation>,
         mut options: RunOptions,
     ) -> Result<Self, StartError> {
+        let began = Instant::now();
         let real = options.clock == ClockKind::Real;
         let supervised = options.supervised.clone();
         let outside = supervised.as_ref().and_then(|it| it.world().cloned());
         let world = outside.or_else(|| simulation.map(|it| Arc::new(World::new(it, real))));
-        let (events, writer) = options.open_events()?;
-        let run_time = supervised.as_ref().map(|it| it.run_time());
-        let environment =
-            (options.clock).environment(events, world.clone(), run_time.unwrap_or_default());
-        let environment = Arc::new(environment);
+        let (recorder, recorded) = options.recorder();
+        let (events, writer) = options.open_events(recorded)?;
+        let score = options.score.clone();
+        let environment = Arc::new(options.environment(events, world.clone()));
         let applications = Applications::new(applications);
         let specification = &applications.specification;
         let assembly = assemble_together(
@@ -105,15 +111,26 @@ impl System {
         inject(&injections, &assembly, &environment).map_err(StartError::Assembly)?;
         let (supervisor, wanted) =
             supervise(&applications, &assembly, &environment).map_err(StartError::Assembly)?;
+        if let Some(score) = &score {
+            score
+                .bind(&applications.specification, &assembly)
+                .map_err(StartError::Assembly)?;
+            environment.clock.advance_to(score.first_ns());
+        }
+        let recording = recorder
+            .map(|it| recording::record(it, &applications, &assembly, &environment, &options));
+        let recording = recording.transpose()?;
         let persistence = Persistence::new(&applications, &assembly.factories);
         let Assembly {
             components,
             statuses,
             executors,
             interfaces,
+            links,
             ..
         } = assembly;
-        let mut system = Self {
+        let meter = real_time::meter(&statuses, &executors);
+        let system = Self {
             applications: applications.names(),
             specification: applications.specification,
             options,
@@ -124,68 +141,24 @@ impl System {
             components: components.into(),
             interfaces: interfaces.into(),
             statuses,
+            meter: Arc::new(meter),
+            links: links.into(),
+            began,
             crew: Crew::new()?,
             lanes: Vec::new(),
             supervisor: Arc::new(supervisor),
             manager_threads: ManagerThreads::default(),
             persistence,
             writer,
+            recording,
         };
-        if let Err(error) = system.bring_up() {
-            // The refusal counts; a log that cannot be written either does not change it.
-            let _log_error = system.close();
-            return Err(error);
-        }
-        if let Err(error) = system.launch(executors, wanted) {
-            // What is on the disk is for the next try.
-            system.persistence = Persistence::default();
-            let _nothing_to_sum_up = system.stop("start_refused");
-            return Err(error);
-        }
-        if let Some(restarted) = supervised.and_then(|it| it.runs()) {
-            system.record(restarted);
-        }
-        Ok(system)
+        system.begin(executors, wanted)
     }
 
-    /// The name of the application; of several, all of them with `+` in between.
-    pub fn name(&self) -> &str {
-        &self.specification.name
-    }
-
-    /// What the container knows of each component.
-    pub fn statuses(&self) -> &[Arc<ComponentStatus>] {
-        &self.statuses
-    }
-
-    /// Time by the application's clock.
-    pub fn now(&self) -> Duration {
-        self.environment.clock.now()
-    }
-
-    /// The fault manager's shell.
-    pub fn supervisor(&self) -> &Arc<Supervisor> {
-        &self.supervisor
-    }
-
-    /// What an operator may ask of it while it runs.
-    pub fn control(&self) -> RunningSystem {
-        RunningSystem {
-            specification: self.specification.clone(),
-            applications: self.applications.clone(),
-            interfaces: Arc::clone(&self.interfaces),
-            statuses: self.statuses.clone(),
-            supervisor: Arc::clone(&self.supervisor),
-        }
-    }
-
-    /// The world, if there is one.
-    pub fn world(&self) -> Option<&Arc<World>> {
-        self.world.as_ref()
-    }
-
-    /// Why the run is over, if it is: waits at most `limit` for that.
+    /// Why the run is over, if it is: waits at most `limit` for that. Rates and loads are counted
+    /// between such waits.
     pub fn wait(&self, limit: Duration) -> Option<&'static str> {
+        self.meter.look(self.now());
         match self.options.clock {
             ClockKind::Simulated => {
                 let ended = self.lanes.iter().all(|(lane, _)| lane.wait(limit));
@@ -206,7 +179,7 @@ impl System {
 
     /// Stops everything in order and says what the run came to.
     pub fn stop(mut self, reason: &'static str) -> (Summary, Option<std::io::Error>) {
-        let summary = self.summary(reason);
+        let mut summary = self.summary(reason);
         let deadline = Instant::now() + STOP_LIMIT;
         self.manager_threads.stop(&self.supervisor);
         for (lane, _) in &self.lanes {
@@ -223,6 +196,7 @@ impl System {
         self.shut_down(remaining(deadline).max(STOP_LIMIT / 3));
         self.persistence.end(&self.environment);
         self.record_end(reason);
+        summary.recording = self.recording.take().map(RecordingThread::finish);
         (summary, self.close().err())
     }
 
@@ -239,6 +213,10 @@ impl System {
     }
 
     fn close(self) -> std::io::Result<()> {
+        if let Some(recording) = self.recording {
+            // Of a run that did not start: what there is of it tells why.
+            let _not_summed_up = recording.finish();
+        }
         self.crew.dismiss();
         self.environment.events.finish();
         self.writer.close()
@@ -276,30 +254,6 @@ impl System {
             "target_reached"
         } else {
             "duration_elapsed"
-        }
-    }
-
-    fn summary(&self, ended_by: &'static str) -> Summary {
-        let application = |members: &Range<usize>| ApplicationSummary {
-            state: application_state(&self.statuses[members.clone()]),
-            ended_by,
-            time_s: self.now().as_secs_f64(),
-            clock: self.options.clock.name(),
-            seed: self.options.seed,
-            events_lost: self.environment.events.lost(),
-        };
-        let applications = self.applications.iter();
-        Summary {
-            applications: applications
-                .map(|(name, members)| (name.clone(), application(members)))
-                .collect(),
-            components: self
-                .statuses
-                .iter()
-                .map(|status| (status.name.clone(), ComponentSummary::of(status)))
-                .collect(),
-            restarts: (self.options.supervised.as_ref()).map_or(0, |it| it.restarts()),
-            robot: self.world.as_ref().map(|world| world.summary()),
         }
     }
 }

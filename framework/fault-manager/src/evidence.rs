@@ -122,6 +122,11 @@ pub enum Evidence {
         /// What it is compared with.
         threshold: f64,
     },
+    /// Nothing: an operator ordered it.
+    Order {
+        /// What, in words.
+        order: String,
+    },
     /// A vote.
     Votes {
         /// Voter.

@@ -47,10 +47,8 @@ impl FaultManager {
         }
         let index = fault.component;
         let before = fault.first_symptom();
+        let checkpoint_before = self.checkpoint_before(index, before);
         let component = &self.system.components[index];
-        let resurrect = component.rules.resurrect.as_ref();
-        let backup = resurrect.and_then(|rule| rule.value.backup);
-        let checkpoint_before = backup.map(|_| before);
         let rule = component.fault;
         match self.components[index].ladder.climb(component, self.now) {
             Rung::Reset {
@@ -84,7 +82,13 @@ impl FaultManager {
         }
     }
 
-    fn recover(&mut self, id: FaultId, action: Action, sentence: String, not_before: Duration) {
+    pub(crate) fn recover(
+        &mut self,
+        id: FaultId,
+        action: Action,
+        sentence: String,
+        not_before: Duration,
+    ) {
         let Some(index) = action.component() else {
             return;
         };

@@ -74,6 +74,17 @@ impl Ladder {
         self.replacing = false;
     }
 
+    /// Index of the secondary that is next; beyond the last one if all were used.
+    pub fn next_secondary(&self) -> usize {
+        self.next_secondary
+    }
+
+    /// An operator has chosen a secondary.
+    pub fn replace(&mut self, secondary: usize) {
+        self.next_secondary = self.next_secondary.max(secondary + 1);
+        self.replacing = true;
+    }
+
     /// The component works again: the window is about how often that is. Those of a secondary that
     /// works are counted from nothing.
     pub fn worked(&mut self) {

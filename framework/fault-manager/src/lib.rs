@@ -20,6 +20,8 @@
 //! * A fault to be ignored that leaves its component in ERROR loses it: what needs it is stopped.
 //! * During an emergency stop faults are recorded and stops carried out; recoveries wait. Afterwards
 //!   what is still in ERROR is recovered, whatever its severity was.
+//! * What an operator orders is a verdict of its own. A reset that he orders begins the ladder anew; if
+//!   it fails the next rung follows, as ever.
 //! * A component that an operator starts again ends its faults, and is stopped again if it lacks
 //!   what it needs.
 #![forbid(unsafe_code)]
@@ -37,6 +39,7 @@ mod ladder;
 mod life;
 mod manager;
 mod observation;
+mod operator;
 mod plan;
 mod state;
 mod stopping;
@@ -47,7 +50,9 @@ mod wording;
 
 pub use evidence::{Evidence, Number};
 pub use manager::FaultManager;
-pub use observation::{ActionOutcome, Detector, DetectorId, DetectorKind, Observation, Symptom};
+pub use observation::{
+    ActionOutcome, Detector, DetectorId, DetectorKind, Observation, OperatorOrder, Symptom,
+};
 pub use plan::{Action, ActionId, Effect, PlannedAction};
 pub use state::Condition;
 pub use system::Scope;

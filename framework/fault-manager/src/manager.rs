@@ -3,15 +3,18 @@
 use std::collections::{BTreeSet, VecDeque};
 use std::time::Duration;
 
+use system_model::fault::FaultKind;
+
 use crate::detectors::Detectors;
 use crate::emergency::Emergency;
 use crate::graph::{Graph, Level};
 use crate::history::History;
+use crate::life::Fault;
 use crate::observation::{Detector, DetectorId, DetectorKind, Observation};
 use crate::plan::Effect;
 use crate::state::{ComponentState, Condition};
 use crate::system::{Scope, System};
-use crate::verdict::{FaultId, Verdict};
+use crate::verdict::{FaultId, FaultState, Verdict};
 
 /// Detection, diagnosis and recovery planning for all applications of a container.
 ///
@@ -106,6 +109,7 @@ impl FaultManager {
             } => self.works(component, incarnation),
             Observation::Clear(None) => self.clear_all(),
             Observation::Clear(Some(id)) => self.clear(id),
+            Observation::Ordered { component, order } => self.ordered(component, order),
             Observation::Tick => {}
         }
         self.elapse(|due| due <= before);
@@ -153,6 +157,24 @@ impl FaultManager {
             None if waits() => Condition::Waiting,
             None => Condition::Working,
         })
+    }
+
+    /// How many faults of a component are confirmed and not healed; orders of an operator are none.
+    pub fn open_faults(&self, component: usize) -> usize {
+        let confirmed = |fault: &&Fault| {
+            fault.component == component
+                && fault.verdict.state == FaultState::Confirmed
+                && fault.kind != FaultKind::OperatorOrder
+        };
+        self.history.open().filter(confirmed).count()
+    }
+
+    /// The verdict on what an operator ordered last for a component, unless it has been forgotten.
+    pub fn newest_order(&self, component: usize) -> Option<FaultId> {
+        let ordered =
+            |fault: &&Fault| fault.component == component && fault.kind == FaultKind::OperatorOrder;
+        let newest = self.history.all().filter(ordered).last();
+        newest.map(|fault| fault.verdict.id)
     }
 
     /// How far each component is down at the moment.

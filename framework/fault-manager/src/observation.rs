@@ -111,8 +111,30 @@ pub enum Observation {
     /// An operator ends a fault that has healed or is latched; without a number, all of them, and
     /// the emergency stop.
     Clear(Option<FaultId>),
+    /// An operator orders something for a component; what makes no sense is ignored
+    /// ([`crate::FaultManager::refusal`] says why).
+    Ordered {
+        /// Index of the component.
+        component: usize,
+        /// What.
+        order: OperatorOrder,
+    },
     /// Nothing but that time has passed.
     Tick,
+}
+
+/// What an operator may order for a component.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum OperatorOrder {
+    /// Reset it; one that was stopped works again by that.
+    Reset,
+    /// Put a secondary in its place.
+    Replace {
+        /// Index in its rules' `secondaries`; `None`: the next one on the ladder.
+        secondary: Option<usize>,
+    },
+    /// Stop it, and what needs it.
+    Stop,
 }
 
 /// What a detector saw.

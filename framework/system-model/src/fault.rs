@@ -52,6 +52,8 @@ pub enum FaultKind {
     ProcessModel,
     /// A voter's source disagrees with the others.
     VotingDissent,
+    /// Nothing went wrong: an operator ordered something.
+    OperatorOrder,
 }
 
 impl FaultKind {
@@ -81,6 +83,7 @@ impl FaultKind {
             Self::MemoryExceeded => "memory_exceeded",
             Self::ProcessModel => "process_model",
             Self::VotingDissent => "voting_dissent",
+            Self::OperatorOrder => "operator_order",
         }
     }
 }

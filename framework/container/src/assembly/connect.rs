@@ -13,7 +13,7 @@ use crate::component::{BoundMethod, ComponentCell, Inbox, PortEnd, Provider};
 use crate::executor::Executor;
 use crate::lane::SETUP_TOKEN;
 use crate::library::LoadedLibrary;
-use crate::port::{connection, mailbox};
+use crate::port::{Drops, connection, mailbox};
 use crate::wake::Wake;
 
 /// Events that may wait for one receiver from one sender: two seconds of a sender that raises one
@@ -23,13 +23,25 @@ pub(crate) const EVENT_QUEUE: usize = 64;
 /// Nonblocking calls that may wait for one provider from one caller.
 const CALL_QUEUE: usize = 16;
 
-/// Makes all connections. They have been checked, so nothing is left out silently.
+/// A connection of data ports, to be looked at.
+#[derive(Debug, Clone)]
+pub struct Link {
+    /// The output.
+    pub source: PortReference,
+    /// The input.
+    pub target: PortReference,
+    /// Data that were dropped on the way.
+    pub drops: Drops,
+}
+
+/// Makes all connections; those of data. They have been checked, so nothing is left out silently.
 pub(super) fn connect(
     specification: &ApplicationSpecification,
     libraries: &[LoadedLibrary],
     components: &[Arc<ComponentCell>],
     executors: &[Executor],
-) {
+) -> Vec<Link> {
+    let mut links = Vec::new();
     for connection in &specification.connections {
         let wire = Wire {
             specification,
@@ -39,11 +51,16 @@ pub(super) fn connect(
             wake: wake_of(executors, connection.target.component),
         };
         match connection.kind {
-            PortKind::Data => wire.data(),
+            PortKind::Data => links.push(Link {
+                source: connection.source.clone(),
+                target: connection.target.clone(),
+                drops: wire.data(),
+            }),
             PortKind::Event => wire.event(),
             PortKind::Service => wire.service(),
         }
     }
+    links
 }
 
 /// Tells every component who calls it.
@@ -80,7 +97,7 @@ struct Wire<'assembly> {
 }
 
 impl Wire<'_> {
-    fn data(&self) {
+    fn data(&self) -> Drops {
         let target = &self.connection.target;
         let declared = self.specification.components[target.component]
             .ports
@@ -90,6 +107,7 @@ impl Wire<'_> {
             declared.map_or((QueuePolicy::Last, 1), |port| (port.queue, port.queue_size));
         let size = self.size(&self.connection.source);
         let (sender, receiver) = connection(policy, queue_size, size);
+        let drops = receiver.drops();
         // Data wake only executors that have no period: the others look by themselves.
         let wake = self
             .wake
@@ -106,6 +124,7 @@ impl Wire<'_> {
                 input.source = Some(receiver);
             }
         });
+        drops
     }
 
     fn event(&self) {

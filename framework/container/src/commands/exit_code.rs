@@ -14,12 +14,16 @@ pub const CONNECTION: u8 = 4;
 pub const COMPONENT: u8 = 5;
 /// The operating system refuses.
 pub const SYSTEM: u8 = 6;
+/// An order to a running application was tried and failed.
+pub const FAILED: u8 = 8;
+/// An order to a running application was not over in time.
+pub const NOT_OVER: u8 = 9;
 /// The command line is not understood; the number is that of `sysexits.h`.
 pub const USAGE: u8 = 64;
 
 /// All of them, in the words of the README.
 #[cfg(test)]
-pub const TABLE: [(u8, &str); 10] = [
+pub const TABLE: [(u8, &str); 12] = [
     (DONE, "what was asked for is done"),
     (
         REFUSED,
@@ -27,7 +31,7 @@ pub const TABLE: [(u8, &str); 10] = [
     ),
     (
         FILE,
-        "a file cannot be read or written, or no running application answers",
+        "a file cannot be read or written, there is no terminal, or no running application answers",
     ),
     (
         LIBRARY,
@@ -35,10 +39,21 @@ pub const TABLE: [(u8, &str); 10] = [
     ),
     (CONNECTION, "ports or connections do not fit the libraries"),
     (COMPONENT, "a component refused to start, or hung in it"),
-    (SYSTEM, "the system refused threads or memory"),
+    (
+        SYSTEM,
+        "the system refused threads, memory or an address to listen at",
+    ),
     (
         container::outer_supervision::GIVEN_UP,
         "the container failed more often than `--restarts` allows",
+    ),
+    (
+        FAILED,
+        "an order to a running application was tried and failed",
+    ),
+    (
+        NOT_OVER,
+        "an order to a running application was not over in time",
     ),
     (USAGE, "the command line is not understood"),
     (130, "a second Ctrl-C ended the run at once"),

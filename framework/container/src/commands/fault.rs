@@ -2,21 +2,13 @@
 
 mod text;
 
-use std::io::{self, Write as _};
-use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Args, Subcommand, ValueEnum};
-use container::control::client::{Client, ClientError, find};
+use clap::{Args, Subcommand};
+use container::control::Request;
 use container::control::protocol::Inject;
-use container::control::{Answer, Request};
 
-/// It was done.
-const DONE: u8 = 0;
-/// The running application refused.
-const REFUSED: u8 = 1;
-/// There is no running application, or it does not answer.
-const NO_ANSWER: u8 = 2;
+use super::operator::{Format, Target, conclude};
 
 /// What `steadfast fault` is asked to do.
 #[derive(Debug, Args)]
@@ -24,17 +16,8 @@ const NO_ANSWER: u8 = 2;
 pub struct FaultArguments {
     #[command(subcommand)]
     command: FaultCommand,
-    /// Which application, if several are running
-    #[arg(long, global = true, value_name = "NAME")]
-    application: Option<String>,
-    /// The socket of the running application, if it cannot be found by name
-    #[arg(
-        long,
-        global = true,
-        value_name = "PATH",
-        conflicts_with = "application"
-    )]
-    socket: Option<PathBuf>,
+    #[command(flatten)]
+    target: Target,
     /// How the answer is written
     #[arg(long, global = true, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -65,46 +48,13 @@ enum FaultCommand {
     },
 }
 
-/// How the answer is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// For people
-    Text,
-    /// For programs: the answer as one JSON object
-    Json,
-}
-
 /// Asks the running application and writes its answer.
 pub fn run(arguments: &FaultArguments) -> ExitCode {
     let request = request(&arguments.command);
-    let answer = match ask(arguments, &request) {
-        Ok(answer) => answer,
-        Err(error) => {
-            // If nobody reads the text the exit code still tells.
-            let _unread = writeln!(io::stderr(), "{error}");
-            return ExitCode::from(NO_ANSWER);
-        }
-    };
-    let code = match &answer {
-        Answer::Done(_) => DONE,
-        Answer::Refused(_) => REFUSED,
-    };
-    let _unread = match (arguments.format, &answer) {
-        (Format::Json, _) => writeln!(io::stdout(), "{:#}", answer.to_json()),
-        (Format::Text, Answer::Done(content)) => {
-            write!(io::stdout(), "{}", text::of(&request, content))
-        }
-        (Format::Text, Answer::Refused(error)) => writeln!(io::stderr(), "{error}"),
-    };
-    ExitCode::from(code)
-}
-
-fn ask(arguments: &FaultArguments, request: &Request) -> Result<Answer, ClientError> {
-    let socket = match &arguments.socket {
-        Some(socket) => socket.clone(),
-        None => find(arguments.application.as_deref())?,
-    };
-    Client::connect(&socket)?.ask(request)
+    let answer = arguments.target.ask(&request);
+    conclude(answer, arguments.format, |content| {
+        text::of(&request, content)
+    })
 }
 
 fn request(command: &FaultCommand) -> Request {

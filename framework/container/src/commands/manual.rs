@@ -13,12 +13,14 @@ A first session:
 Exit codes, of all commands:
    0  what was asked for is done
    1  refused: a file has problems, a running application says no, or a name cannot be used
-   2  a file cannot be read or written, or no running application answers
+   2  a file cannot be read or written, there is no terminal, or no running application answers
    3  a library is missing, no component, or for another container
    4  ports or connections do not fit the libraries
    5  a component refused to start, or hung in it
-   6  the system refused threads or memory
+   6  the system refused threads, memory or an address to listen at
    7  the container failed more often than --restarts allows
+   8  an order to a running application was tried and failed
+   9  an order to a running application was not over in time
   64  the command line is not understood
  130  a second Ctrl-C ended the run at once
 
@@ -56,9 +58,25 @@ Exit codes:
     3  a library is missing, no component, or for another container
     4  ports or connections do not fit the libraries
     5  a component refused to be initialised or started, or hung in it
-    6  the system refused threads or memory
+    6  the system refused threads or memory, or an address to listen at
     7  --supervised: the container failed more often than --restarts allows
   130  a second Ctrl-C ended it at once";
+
+/// Of `replay`.
+pub const REPLAY: &str = "\
+Examples:
+  steadfast replay drive.mcap application.xml --rules rules.xml
+  steadfast replay drive.mcap application.xml --component path_planner --output again.mcap
+  steadfast replay drive.mcap application.xml --rules rules.xml --format json
+
+Exit codes:
+  0  it was replayed to its end, whatever was found
+  1  a profile or rule file has problems
+  2  a file is no recording, is damaged, or cannot be read or written
+  3  a library is missing, no component, or for another container
+  4  the recording does not fit the application, or ports do not fit the libraries
+  5  the component refused to be initialised or started, or hung in it
+  6  the system refused threads or memory";
 
 /// Of `fault`.
 pub const FAULT: &str = "\
@@ -72,6 +90,55 @@ Exit codes:
   0  it was done
   1  the application refused: no such fault, or nothing that can be injected
   2  no application is running, several are, or it does not answer";
+
+/// Of `component`.
+pub const COMPONENT: &str = "\
+Examples:
+  steadfast component list
+  steadfast component info camera --format json
+  steadfast component reset camera --timeout 30s
+  steadfast component replace obstacle_avoidance --with obstacle_avoidance_simple
+  steadfast component stop camera
+
+Exit codes:
+  0  it was done
+  1  the application refused: no such component, or it makes no sense now
+  2  no application is running, several are, or it does not answer
+  8  it was tried and failed; the rules say what follows
+  9  it was not over within --timeout; it goes on";
+
+/// Of `status`.
+pub const STATUS: &str = "\
+Examples:
+  steadfast status
+  steadfast status --application target_following --format json
+
+Columns:
+  LEVEL  OK; WARN: it works, but is being recovered or has an open fault; ERROR: it should run and
+         does not; STALE: it was stopped
+  RATE   completed cycles per second, over the last second
+  LOAD   how much of its period its executor's cycle takes, over the last second
+
+Exit codes:
+  0  it was done
+  1  the application refused: too many ask at once
+  2  no application is running, several are, or it does not answer";
+
+/// Of `top`.
+pub const TOP: &str = "\
+Examples:
+  steadfast top
+  steadfast top --once
+  steadfast top --picture top.svg --size 110x30
+
+Keys: arrows choose a component, r resets it, s stops it (asks first), i injects a fault,
+c clears a fault, ? helps, q quits. When the application ends, top says so and waits for the next.
+
+Exit codes:
+  0  it was left by a key
+  1  the application refused: too many ask at once
+  2  --once, --picture: no application is running, several are, or it does not answer; there is no
+     terminal, or the picture cannot be written";
 
 /// Of `bench`.
 pub const BENCH: &str = "\

@@ -1,10 +1,13 @@
 //! `steadfast run`: brings applications up, watches them, stops them in order.
 
-mod applications;
-mod duration;
+pub(super) mod applications;
+pub(in crate::commands) mod duration;
 mod failure;
+mod libraries;
 mod live;
 mod models;
+mod observers;
+mod recording;
 mod report;
 mod supervised;
 mod words;
@@ -17,9 +20,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
-use container::assembly::LibraryOptions;
-use container::control::Server;
-use container::library::LibrarySearch;
 use container::summary::Summary;
 use container::system::{Application, ClockKind, RunOptions, StateOptions, System};
 use crossbeam::channel::bounded;
@@ -27,9 +27,13 @@ use robot_simulation::Simulation;
 use system_profile::{Problem, load_world};
 
 use super::problems;
-pub(super) use failure::{Failed, exit_code};
-use failure::{refused, unwritable};
+use applications::Sources;
+use failure::unwritable;
+pub(super) use failure::{Failed, exit_code, refused};
+pub(super) use libraries::{libraries, library_folders};
 use live::Watcher;
+use observers::{ObserverArguments, listen};
+use recording::RecordingArguments;
 use supervised::SupervisionArguments;
 
 /// How often a person's view is refreshed: fast enough to look alive, slow enough to be read.
@@ -37,9 +41,6 @@ const REFRESH_PERIOD: Duration = Duration::from_millis(100);
 
 /// Lines that may wait for the view; a view that lags loses lines, the event file does not.
 const ECHO_QUEUE: usize = 1024;
-
-/// Folders for libraries by environment, separated by colons.
-const LIBRARY_PATH_VARIABLE: &str = "STEADFAST_LIBRARY_PATH";
 
 /// What `steadfast run` is asked to do.
 #[derive(Debug, Args)]
@@ -88,7 +89,11 @@ pub struct RunArguments {
     #[arg(long)]
     fresh: bool,
     #[command(flatten)]
+    observers: ObserverArguments,
+    #[command(flatten)]
     supervision: SupervisionArguments,
+    #[command(flatten)]
+    recording: RecordingArguments,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -97,6 +102,18 @@ enum ClockArgument {
     Real,
     /// As fast as it goes; the same seed gives the same events
     Simulated,
+}
+
+impl RunArguments {
+    /// The files that say what is run.
+    fn sources(&self) -> Sources<'_> {
+        Sources {
+            applications: &self.applications,
+            rules: &self.rules,
+            inject: &self.inject,
+            search_path: &self.search_path,
+        }
+    }
 }
 
 /// Runs applications to their end.
@@ -117,13 +134,14 @@ pub fn run(arguments: &RunArguments) -> ExitCode {
 
 fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
     let supervised = supervised::join(arguments)?;
-    let applications = applications::load(arguments)?;
+    let applications = applications::load(&arguments.sources())?;
     let simulation = match supervised.as_ref().and_then(|it| it.world()) {
         Some(_elsewhere) => None,
         None => simulate(&applications, arguments.seed)?,
     };
     let stop_asked = watch_signals()?;
     let (echo, lines) = bounded(ECHO_QUEUE);
+    let (observers, echo) = arguments.observers.prepare(echo)?;
     let options = RunOptions {
         clock: match arguments.clock {
             ClockArgument::Real => ClockKind::Real,
@@ -133,18 +151,21 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         seed: arguments.seed,
         events: arguments.events.clone(),
         echo: Some(echo),
-        libraries: libraries(arguments),
+        libraries: libraries(&arguments.library_path),
         state: StateOptions {
             folder: arguments.state_path.clone(),
             // A container that goes on where another has died goes on from what that has left.
             fresh: arguments.fresh && supervised.as_ref().is_none_or(|it| it.restarts() == 0),
         },
+        score: None,
+        recording: arguments.observers.shown(arguments.recording.options()),
         supervised: supervised.clone(),
     };
     let started = System::start(applications, simulation, options);
     let system = started.map_err(|error| refused(&error))?;
     let mut watcher = Watcher::new(system.name(), lines);
     let server = listen(&system, &watcher);
+    let observers = observers.start(&system, &watcher);
     let reason = loop {
         if stop_asked.load(Ordering::Acquire) {
             break "stopped";
@@ -157,7 +178,7 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
     if let Some(supervised) = supervised {
         supervised.stops();
     }
-    drop(server);
+    drop((server, observers));
     let world = system.world().cloned();
     let (summary, log_error) = system.stop(reason);
     watcher.finish();
@@ -169,25 +190,14 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         let picture = picture.map_err(|error| unwritable(Some(path), &error))?;
         write(path, picture.as_bytes())?;
     }
-    conclude(arguments, &summary)
-}
-
-/// Lets an operator ask and command by `steadfast fault`. The robot runs without that, too.
-fn listen(system: &System, watcher: &Watcher) -> Option<Server> {
-    match Server::start(system.name(), Arc::new(system.control())) {
-        Ok(server) => {
-            let path = server.path().display();
-            watcher.say(&format!(
-                "notice: 'steadfast fault' finds this run at {path}"
-            ));
-            Some(server)
-        }
-        Err(error) => {
-            watcher.say(&format!(
-                "notice: 'steadfast fault' cannot reach this run: {error}"
-            ));
-            None
-        }
+    conclude(arguments, &summary)?;
+    let recording = summary.recording.as_ref();
+    match recording.and_then(|it| it.failure.clone()) {
+        Some(text) => Err(Failed {
+            code: exit_code::FILE,
+            text,
+        }),
+        None => Ok(()),
     }
 }
 
@@ -254,30 +264,6 @@ fn watch_signals() -> Result<Arc<AtomicBool>, Failed> {
             })?;
     }
     Ok(asked)
-}
-
-/// Where libraries are found and how they are probed.
-fn libraries(arguments: &RunArguments) -> LibraryOptions {
-    LibraryOptions {
-        search: LibrarySearch::new(library_folders(&arguments.library_path)),
-        executable: std::env::current_exe().ok(),
-    }
-}
-
-/// Folders of libraries: those given, those of the environment, then that of this executable.
-pub fn library_folders(given: &[PathBuf]) -> Vec<PathBuf> {
-    let mut folders = given.to_vec();
-    if let Some(variable) = std::env::var_os(LIBRARY_PATH_VARIABLE) {
-        folders.extend(std::env::split_paths(&variable));
-    }
-    let executable = std::env::current_exe().ok();
-    folders.extend(
-        executable
-            .as_deref()
-            .and_then(Path::parent)
-            .map(PathBuf::from),
-    );
-    folders
 }
 
 fn write(path: &Path, content: &[u8]) -> Result<(), Failed> {

@@ -128,6 +128,7 @@ impl Component {
     /// Says which of the component's libraries it is of.
     pub fn set_variant(&mut self, variant: usize) {
         self.variant = variant;
+        self.status.set_variant(variant);
     }
 
     /// Whether the library's constructor has run.

@@ -3,12 +3,18 @@
 //! | request | answer, if all is well |
 //! |---|---|
 //! | `{"request":"status"}` | `{"ok":true,"status":{…}}` |
+//! | `{"request":"component_list"}` | `{"ok":true,"components":{"camera":{…}, …}}` |
+//! | `{"request":"component_info","component":"camera"}` | `{"ok":true,"component":{…}}` |
+//! | `{"request":"component_reset","component":"camera"}` | `{"ok":true,"ordered":3}` |
+//! | `{"request":"component_replace","component":"camera","with":"spare"}`, `"with":null` for the next secondary | `{"ok":true,"ordered":3}` |
+//! | `{"request":"component_stop","component":"camera"}` | `{"ok":true,"ordered":3}` |
 //! | `{"request":"fault_list"}` | `{"ok":true,"faults":[verdict, …]}` |
 //! | `{"request":"fault_show","id":3}` | `{"ok":true,"fault":verdict}` |
 //! | `{"request":"fault_clear","id":3}`, `"id":null` for all | `{"ok":true,"cleared":[3]}` |
 //! | `{"request":"fault_inject","inject":"<inject …/>"}` | `{"ok":true,"injection":0}` |
 //!
-//! `inject` may also be an object of the element's attributes. A refusal is
+//! `ordered` is the number of the verdict that tells what becomes of the order: it was carried out when
+//! that has `handling_us`. `inject` may also be an object of the element's attributes. A refusal is
 //! `{"ok":false,"error":"why"}`.
 
 use std::collections::BTreeMap;
@@ -30,6 +36,30 @@ pub const MAX_ANSWER_BYTES: usize = 16 * 1024 * 1024;
 pub enum Request {
     /// How the system is.
     Status,
+    /// How its components are.
+    ComponentList,
+    /// Everything about one component.
+    ComponentInfo {
+        /// Its name.
+        component: String,
+    },
+    /// Resets a component; one that was stopped works again by that.
+    ComponentReset {
+        /// Its name.
+        component: String,
+    },
+    /// Puts a secondary in a component's place.
+    ComponentReplace {
+        /// Its name.
+        component: String,
+        /// Component type of the secondary; `None`: the next one.
+        with: Option<String>,
+    },
+    /// Stops a component, and what needs it.
+    ComponentStop {
+        /// Its name.
+        component: String,
+    },
     /// All faults, the newest verdict of each.
     FaultList,
     /// One fault.
@@ -168,8 +198,35 @@ mod tests {
     #[test]
     fn requests_are_what_the_table_says() {
         let inject = Inject::Element("<inject/>".into());
+        let component = || "camera".to_owned();
         for (line, request) in [
             (r#"{"request":"status"}"#, Request::Status),
+            (r#"{"request":"component_list"}"#, Request::ComponentList),
+            (
+                r#"{"request":"component_info","component":"camera"}"#,
+                Request::ComponentInfo {
+                    component: component(),
+                },
+            ),
+            (
+                r#"{"request":"component_reset","component":"camera"}"#,
+                Request::ComponentReset {
+                    component: component(),
+                },
+            ),
+            (
+                r#"{"request":"component_replace","component":"camera","with":null}"#,
+                Request::ComponentReplace {
+                    component: component(),
+                    with: None,
+                },
+            ),
+            (
+                r#"{"request":"component_stop","component":"camera"}"#,
+                Request::ComponentStop {
+                    component: component(),
+                },
+            ),
             (r#"{"request":"fault_list"}"#, Request::FaultList),
             (
                 r#"{"request":"fault_show","id":3}"#,

@@ -1,9 +1,8 @@
 //! A running system under an operator's control.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::Instant;
 
 use fault_manager::{FaultId, FaultState, Observation, Verdict};
 use serde::Serialize;
@@ -12,15 +11,12 @@ use system_model::specification::ApplicationSpecification;
 use system_profile::{Problem, Severity, read_injection};
 
 use super::Control;
+use super::ordering::{ORDER_LIMIT, Wanted};
 use super::protocol::{Answer, Inject, Request};
+use crate::assembly::Link;
 use crate::library::PortDescription;
-use crate::status::ComponentStatus;
-use crate::summary::{ComponentSummary, application_state};
+use crate::status::{ComponentStatus, Meter};
 use crate::supervision::Supervisor;
-
-/// The fault manager sees a request within microseconds; after this it is so busy that the operator
-/// should hear of that. Short, because the next client waits meanwhile.
-const CLEAR_LIMIT: Duration = Duration::from_millis(200);
 
 /// What an injection that comes over the socket is called in problems.
 const REQUEST: &str = "the injection";
@@ -37,26 +33,30 @@ pub struct RunningSystem {
     pub statuses: Vec<Arc<ComponentStatus>>,
     /// The fault manager's shell.
     pub supervisor: Arc<Supervisor>,
-}
-
-/// The answer to [`Request::Status`].
-#[derive(Debug, Serialize)]
-struct Status {
-    /// The state of each, by its name.
-    applications: BTreeMap<String, &'static str>,
-    /// `real` or `simulated`.
-    clock: &'static str,
-    /// Since the start, by that clock.
-    time_s: f64,
-    /// Whether an emergency stop is latched.
-    emergency_stop: bool,
-    components: BTreeMap<String, ComponentSummary>,
+    /// How often components work, and how long that takes.
+    pub meter: Arc<Meter>,
+    /// The connections of data ports.
+    pub links: Arc<[Link]>,
+    /// When the container was started.
+    pub began: Instant,
+    /// How often it was restarted by the parent that supervises it.
+    pub restarts: u32,
 }
 
 impl Control for RunningSystem {
     fn handle(&self, request: Request) -> Answer {
         match request {
-            Request::Status => answer("status", &self.status()),
+            Request::Status => answer("status", &self.view()),
+            Request::ComponentList => answer("components", &self.view().components),
+            Request::ComponentInfo { component } => match self.find(&component) {
+                Ok(index) => answer("component", &self.info(index)),
+                Err(reason) => Answer::Refused(reason),
+            },
+            Request::ComponentReset { component } => self.order(&component, &Wanted::Reset),
+            Request::ComponentReplace { component, with } => {
+                self.order(&component, &Wanted::Replacement(with))
+            }
+            Request::ComponentStop { component } => self.order(&component, &Wanted::Stop),
             Request::FaultList => answer("faults", &self.supervisor.verdicts()),
             Request::FaultShow { id } => match self.verdict(id) {
                 Some(verdict) => answer("fault", &verdict),
@@ -83,28 +83,6 @@ fn unknown(id: u64) -> Answer {
 }
 
 impl RunningSystem {
-    fn status(&self) -> Status {
-        let clock = &self.supervisor.environment().clock;
-        let statuses = self.statuses.iter();
-        let applications = self.applications.iter();
-        let state = |members: &Range<usize>| application_state(&self.statuses[members.clone()]);
-        Status {
-            applications: applications
-                .map(|(name, members)| (name.clone(), state(members)))
-                .collect(),
-            clock: if clock.is_simulated() {
-                "simulated"
-            } else {
-                "real"
-            },
-            time_s: clock.now().as_secs_f64(),
-            emergency_stop: self.supervisor.is_emergency(),
-            components: statuses
-                .map(|status| (status.name.clone(), ComponentSummary::of(status)))
-                .collect(),
-        }
-    }
-
     fn verdict(&self, id: u64) -> Option<Verdict> {
         let mut verdicts = self.supervisor.verdicts().into_iter();
         verdicts.find(|verdict| verdict.id.0 == id)
@@ -119,7 +97,7 @@ impl RunningSystem {
             },
         };
         let observation = Observation::Clear(id.map(FaultId));
-        if !self.supervisor.tell(observation, CLEAR_LIMIT) {
+        if !self.supervisor.tell(observation, ORDER_LIMIT) {
             return Answer::Refused("the fault manager is busy; it will be done later".into());
         }
         let after = self.supervisor.verdicts();

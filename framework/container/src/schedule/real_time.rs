@@ -89,12 +89,13 @@ impl RealTime {
 
     /// Sets the next release; a cycle that took longer than its period is reported, and the next
     /// one is due at once, without a burst to catch up.
-    fn finish_cycle(&mut self, lane: &Lane) {
+    fn finish_cycle(&mut self, began_ns: u64, lane: &Lane) {
         let period_ns = self.period_ns();
         if period_ns == 0 {
             return;
         }
         let now_ns = self.environment.clock.now_ns();
+        self.executor.status.add_busy_ns(now_ns - began_ns);
         let next_ns = self.release_ns + period_ns;
         if now_ns <= next_ns {
             self.release_ns = next_ns;
@@ -123,7 +124,7 @@ impl Work for RealTime {
             while self.executor.step(now_ns, lane) {
                 self.serve(lane);
             }
-            self.finish_cycle(lane);
+            self.finish_cycle(now_ns, lane);
         }
     }
 

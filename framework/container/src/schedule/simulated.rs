@@ -11,7 +11,8 @@ use crate::component::{ComponentCell, Environment, mark_lost};
 use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::guard::loss::LostThread;
-use crate::lane::{Lane, Work};
+use crate::lane::{Lane, SETUP_TOKEN, Work};
+use crate::replay::Score;
 use crate::supervision::Supervisor;
 use crate::world::World;
 
@@ -50,6 +51,8 @@ pub struct Simulated {
     supervisor: Arc<Supervisor>,
     world: Option<Arc<World>>,
     end_ns: u64,
+    /// The recording that is played, and for each executor whether all its components are.
+    played: Option<(Arc<Score>, Vec<bool>)>,
 }
 
 impl Simulated {
@@ -62,13 +65,23 @@ impl Simulated {
         end: Option<Duration>,
     ) -> Self {
         executors.sort_by(|a, b| (b.priority, &a.name).cmp(&(a.priority, &b.name)));
+        let environment = Arc::clone(supervisor.environment());
+        let begin_ns = environment.clock.now_ns();
+        let first = |one: &Executor| {
+            // Every run looks at the same moments: on the grid of the period.
+            begin_ns.next_multiple_of(nanoseconds(one.period).max(1))
+        };
         Self {
-            due_ns: vec![0; executors.len()],
+            due_ns: executors.iter().map(first).collect(),
+            played: environment.score.as_ref().map(|score| {
+                let played = executors.iter().map(|one| is_played(one, score));
+                (Arc::clone(score), played.collect())
+            }),
             executors,
             components,
             running: None,
             obeying: None,
-            environment: Arc::clone(supervisor.environment()),
+            environment,
             supervisor,
             world,
             end_ns: end.map_or(u64::MAX, nanoseconds),
@@ -78,8 +91,20 @@ impl Simulated {
     /// When an executor wants to run next.
     fn due(&self, index: usize) -> Option<u64> {
         let executor = &self.executors[index];
+        if let Some(score) = self.score_of(index) {
+            let mut members = executor.members.iter();
+            return members
+                .any(|member| score.has_cycle(member.number as usize))
+                .then_some(0);
+        }
         let wanted = executor.kind.has_period() || executor.wake.is_pending();
         wanted.then(|| self.due_ns[index])
+    }
+
+    /// The recording by which an executor goes.
+    fn score_of(&self, index: usize) -> Option<&Score> {
+        let (score, played) = self.played.as_ref()?;
+        played[index].then_some(score)
     }
 
     /// The next executor by time; the order of `executors` decides among equals.
@@ -109,10 +134,17 @@ impl Simulated {
     fn finish_cycle(&mut self, index: usize, now_ns: u64, lane: &Lane) {
         let executor = &self.executors[index];
         let end_ns = now_ns + self.environment.busy.take_ns();
+        if let Some(score) = self.score_of(index) {
+            for member in &executor.members {
+                score.end_cycle(member.number as usize);
+            }
+            return;
+        }
         if !executor.kind.has_period() {
             self.due_ns[index] = end_ns + SIMULATED_CYCLE_NS;
             return;
         }
+        executor.status.add_busy_ns(end_ns - now_ns);
         let next_ns = self.due_ns[index] + nanoseconds(executor.period);
         self.due_ns[index] = next_ns.max(end_ns);
         if end_ns > next_ns {
@@ -171,12 +203,19 @@ impl Work for Simulated {
             let tick_ns = self.supervisor.due_ns();
             if let Some(tick_ns) = tick_ns
                 && next.is_none_or(|(time_ns, _)| tick_ns <= time_ns)
+                && self.cue_ns().is_none_or(|cue_ns| tick_ns <= cue_ns)
+                && !self.is_over(next.map(|(time_ns, _)| time_ns))
             {
                 if tick_ns > self.environment.clock.now_ns() && !self.advance(tick_ns) {
                     return;
                 }
                 self.supervisor.tick();
                 continue;
+            }
+            match self.play(next.map(|(time_ns, _)| time_ns), lane) {
+                Played::Nothing => {}
+                Played::Some => continue,
+                Played::All => return,
             }
             let Some((time_ns, index)) = next else {
                 // Nothing will ever happen by itself: only the world moves until the end.
@@ -199,7 +238,54 @@ impl Work for Simulated {
     }
 }
 
+/// What of a recording was played.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Played {
+    /// Nothing: something else comes before.
+    Nothing,
+    /// What comes next.
+    Some,
+    /// There is nothing more.
+    All,
+}
+
 impl Simulated {
+    /// When the next message of the recording comes.
+    fn cue_ns(&self) -> Option<u64> {
+        self.played.as_ref()?.0.next_ns()
+    }
+
+    /// Whether everything of the recording was played, and what is next by itself comes after it.
+    fn is_over(&self, next_ns: Option<u64>) -> bool {
+        let over = |score: &Score| {
+            score.next_ns().is_none() && next_ns.is_none_or(|next_ns| next_ns > score.last_ns())
+        };
+        self.played.as_ref().is_some_and(|(score, _)| over(score))
+    }
+
+    /// Lets come what the recording has next, unless something else comes before.
+    fn play(&self, next_ns: Option<u64>, lane: &Lane) -> Played {
+        let Some((score, _)) = &self.played else {
+            return Played::Nothing;
+        };
+        if self.is_over(next_ns) {
+            return Played::All;
+        }
+        let Some(cue_ns) = score.next_ns() else {
+            return Played::Nothing;
+        };
+        let now_ns = self.environment.clock.now_ns();
+        // What came at this very time comes before the cycles that read and write it.
+        if next_ns.is_some_and(|next_ns| next_ns < cue_ns.max(now_ns)) {
+            return Played::Nothing;
+        }
+        if cue_ns > now_ns && !self.advance(cue_ns) {
+            return Played::All;
+        }
+        score.release(self.environment.clock.now_ns(), lane.token());
+        Played::Some
+    }
+
     fn idle_until_end(&self, lane: &Lane) {
         /// Steps in which an idle run goes to its end, so that it can be stopped.
         const IDLE_STEP_NS: u64 = 100_000_000;
@@ -224,4 +310,16 @@ impl HasPeriod for ExecutionKind {
     fn has_period(self) -> bool {
         matches!(self, Self::Periodic | Self::PeriodicShared)
     }
+}
+
+/// Whether all components of an executor are played.
+fn is_played(executor: &Executor, score: &Score) -> bool {
+    let plays = |cell: &ComponentCell| {
+        let component = cell.enter(SETUP_TOKEN, Duration::ZERO);
+        component.is_some_and(|component| score.plays(component.name()))
+    };
+    executor
+        .members
+        .iter()
+        .all(|member| plays(&member.component))
 }

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use fault_manager::Observation;
+use fault_manager::{Condition, FaultId, Observation, OperatorOrder};
 
 use super::{Order, Supervisor, Task};
 use crate::event_log::Event;
@@ -11,7 +11,59 @@ use crate::event_log::Event;
 /// takes it microseconds.
 const LOOK_PERIOD: Duration = Duration::from_millis(1);
 
+/// What the fault manager knows at the moment, as far as it takes no time to say.
+#[derive(Debug, Clone)]
+pub struct Overview {
+    /// Whether an emergency stop is latched.
+    pub emergency_stop: bool,
+    /// By component: how it is doing, and how many of its faults are confirmed and not healed.
+    pub components: Vec<(Condition, usize)>,
+    /// How many verdicts have been put on record: if it is the same, none has changed.
+    pub recorded: u64,
+}
+
 impl Supervisor {
+    /// What the fault manager knows at the moment.
+    pub fn overview(&self) -> Overview {
+        let core = self.lock();
+        let component = |index| {
+            let condition = core.manager.condition(index).unwrap_or(Condition::Working);
+            (condition, core.manager.open_faults(index))
+        };
+        Overview {
+            emergency_stop: core.manager.is_emergency(),
+            components: (0..self.statuses.len()).map(component).collect(),
+            recorded: core.recorded,
+        }
+    }
+
+    /// Has something done with a component; the number of the verdict that tells what became of it.
+    /// Waits at most `limit` until the fault manager has seen it.
+    ///
+    /// # Errors
+    /// Why it makes no sense now, and what to do instead.
+    pub fn order(
+        &self,
+        component: usize,
+        order: OperatorOrder,
+        limit: Duration,
+    ) -> Result<FaultId, String> {
+        let before = {
+            let core = self.lock();
+            if let Some(reason) = core.manager.refusal(component, order) {
+                return Err(reason);
+            }
+            core.manager.newest_order(component)
+        };
+        if !self.tell(Observation::Ordered { component, order }, limit) {
+            return Err("the fault manager is busy; it will be done later".to_owned());
+        }
+        let newest = self.lock().manager.newest_order(component);
+        newest
+            .filter(|newest| Some(*newest) != before)
+            .ok_or_else(|| "a fault came first; look at 'steadfast fault list'".to_owned())
+    }
+
     /// Leaves an observation and waits until the fault manager has seen it, at most `limit`; whether
     /// it has.
     pub fn tell(&self, observation: Observation, limit: Duration) -> bool {

@@ -41,7 +41,8 @@ pub fn reset(
     checkpoint_before_ns: Option<u64>,
     loss: &Loss,
 ) -> Result<Recovered, String> {
-    if !component.is_alive() {
+    // Only an operator's order finds it destroyed.
+    if !component.is_alive() || component.state() == LifeCycleState::Destroyed {
         return replace(
             component,
             standbys,

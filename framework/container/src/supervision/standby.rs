@@ -69,6 +69,13 @@ impl Standbys {
         indices.filter(|index| !self.places[*index].taken.load(Ordering::Acquire))
     }
 
+    /// Each variant of which the rules want one prepared, and whether it is.
+    pub fn readiness(&self) -> impl Iterator<Item = (usize, bool)> {
+        let variants = self.factory.variants().iter().enumerate();
+        let wanted = variants.filter(|(_, variant)| variant.preload != Preload::Cold);
+        wanted.map(|(index, _)| (index, self.places[index].taken.load(Ordering::Acquire)))
+    }
+
     /// Prepares one of a variant, as far as the rules say.
     ///
     /// # Errors

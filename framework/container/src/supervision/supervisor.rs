@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 
 use crossbeam::channel::{Receiver, Sender, bounded};
 use fault_manager::{Effect, FaultId, FaultManager, Observation, Verdict};
+use system_model::fault::FaultKind;
 use system_model::specification::ManagerPort;
 
 use super::emergency::Emergency;
@@ -56,6 +57,8 @@ pub(super) struct Core {
     pub(super) outputs: ManagerOutputs,
     /// How long the last decision took.
     took: Duration,
+    /// How many verdicts have been put on record.
+    pub(super) recorded: u64,
 }
 
 impl Core {
@@ -102,6 +105,7 @@ impl Supervisor {
                 decisions: VecDeque::new(),
                 outputs: ManagerOutputs::default(),
                 took: Duration::ZERO,
+                recorded: 0,
             }),
             orders,
             standbys,
@@ -254,9 +258,10 @@ impl Supervisor {
 
     fn record(&self, core: &mut Core, mut verdict: Verdict, took: Duration, at_ns: u64) {
         self.environment.scenes.complete(&mut verdict);
+        core.recorded += 1;
         let known = core.decision_us(verdict.id);
-        if known.is_none() {
-            // A verdict is recorded first when its fault is confirmed, and changes again only while
+        if known.is_none() && verdict.kind != FaultKind::OperatorOrder.name() {
+            // An order is no fault. A verdict is recorded first when its fault is confirmed, and changes again only while
             // its decision is remembered, but for one that is very old.
             self.raise(core, ManagerPort::Fault);
         }

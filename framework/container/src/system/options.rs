@@ -15,6 +15,8 @@ use crate::device::Devices;
 use crate::event_log::{Event, EventLog, EventWriter};
 use crate::injection::{Injections, still_to_come};
 use crate::outer_supervision::Supervised;
+use crate::recording::{Recorder, RecordingOptions};
+use crate::replay::Score;
 use crate::schedule::BusyTime;
 use crate::supervision::{Observations, Scenes};
 use crate::world::World;
@@ -44,6 +46,7 @@ impl ClockKind {
         events: EventLog,
         world: Option<Arc<World>>,
         run_time: Duration,
+        score: Option<Arc<Score>>,
     ) -> Environment {
         Environment {
             clock: match self {
@@ -56,6 +59,7 @@ impl ClockKind {
             injections: Injections::default(),
             scenes: Scenes::default(),
             world,
+            score,
             busy: BusyTime::default(),
         }
     }
@@ -78,6 +82,10 @@ pub struct RunOptions {
     pub libraries: LibraryOptions,
     /// Where checkpoints lie that outlive the container.
     pub state: StateOptions,
+    /// The recording that is played instead of components, in simulated time.
+    pub score: Option<Arc<Score>>,
+    /// What is recorded.
+    pub recording: RecordingOptions,
     /// The parent that supervises this container, if one does.
     pub supervised: Option<Arc<Supervised>>,
 }
@@ -92,6 +100,14 @@ pub struct StateOptions {
 }
 
 impl RunOptions {
+    /// What the components of the run share.
+    pub(super) fn environment(&self, events: EventLog, world: Option<Arc<World>>) -> Environment {
+        let run_time = self.supervised.as_ref().map(|it| it.run_time());
+        let run_time = run_time.unwrap_or_default();
+        self.clock
+            .environment(events, world, run_time, self.score.clone())
+    }
+
     /// What of a run's injections this container makes: one that goes on where another has died does
     /// not begin anew.
     pub(super) fn injections(&self, all: &[Injection]) -> Vec<Injection> {
@@ -101,17 +117,43 @@ impl RunOptions {
         all.iter().filter_map(to_come).collect()
     }
 
+    /// The recording that is asked for, and where events go for it.
+    pub(super) fn recorder(&self) -> (Option<Recorder>, Option<Sender<(u64, Event)>>) {
+        if !self.recording.any() {
+            return (None, None);
+        }
+        let mut options = self.recording.clone();
+        let restarts = self.supervised.as_ref().map_or(0, |it| it.restarts());
+        options.file = options.file.map(|file| after_restarts(file, restarts));
+        let (recorder, events) = Recorder::new(options, self.clock == ClockKind::Simulated);
+        (Some(recorder), Some(events))
+    }
+
     /// Opens the event file: a fresh one, or that of the container before.
-    pub(super) fn open_events(&mut self) -> Result<(EventLog, EventWriter), StartError> {
+    pub(super) fn open_events(
+        &mut self,
+        recorded: Option<Sender<(u64, Event)>>,
+    ) -> Result<(EventLog, EventWriter), StartError> {
         let (path, echo) = (self.events.as_deref(), self.echo.take());
         let waits = self.clock == ClockKind::Simulated;
         let opened = match self.supervised {
             Some(_) => EventLog::resume(path, waits, echo),
             None => EventLog::open(path, waits, echo),
         };
-        opened.map_err(|error| StartError::Output {
+        let opened = opened.map_err(|error| StartError::Output {
             path: self.events.clone().unwrap_or_default(),
             error,
-        })
+        });
+        opened.map(|(events, writer)| (events.recorded_by(recorded), writer))
     }
+}
+
+/// A container that goes on where another has died leaves that one's recording as it is, and writes
+/// `drive-restart-1.mcap` beside `drive.mcap`.
+fn after_restarts(file: PathBuf, restarts: u32) -> PathBuf {
+    if restarts == 0 {
+        return file;
+    }
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+    file.with_file_name(format!("{stem}-restart-{restarts}.mcap"))
 }

@@ -9,6 +9,7 @@ use crate::component::Environment;
 use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::scheduling;
+use crate::status::{ComponentStatus, Meter};
 use crate::world::World;
 
 /// Moves the world along with the machine's clock.
@@ -57,4 +58,26 @@ pub(super) fn preparation(
             environment.events.record(now_ns, Event::Notice { message });
         }
     }
+}
+
+/// What measures rates and loads of these components.
+pub(super) fn meter(statuses: &[Arc<ComponentStatus>], executors: &[Executor]) -> Meter {
+    let runs = |executor: &Executor, component: usize| {
+        let members = executor.members.iter();
+        let mut numbers = members.map(|member| usize::try_from(member.number));
+        numbers.any(|number| number == Ok(component))
+    };
+    let executor_of = |component| {
+        let position = executors.iter().position(|one| runs(one, component));
+        // Every component is in an executor.
+        position.unwrap_or(usize::MAX)
+    };
+    Meter::new(
+        statuses.to_vec(),
+        executors
+            .iter()
+            .map(|one| Arc::clone(&one.status))
+            .collect(),
+        (0..statuses.len()).map(executor_of).collect(),
+    )
 }

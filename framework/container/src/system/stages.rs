@@ -10,6 +10,7 @@ use system_model::life_cycle::Operation;
 use system_model::specification::{ExecutionKind, SchedulingPolicy};
 
 use super::agenda::{Agenda, Failure, Step};
+use super::persistence::Persistence;
 use super::real_time::{self, WorldThread};
 use super::{BRING_UP_LIMIT, ClockKind, STOP_LIMIT, StartError, System};
 use crate::event_log::Event;
@@ -18,9 +19,33 @@ use crate::lane::{Lane, SETUP_TOKEN, remaining};
 use crate::schedule::{RealTime, Simulated};
 
 impl System {
+    /// Brings all up and lets them run.
+    pub(super) fn begin(
+        mut self,
+        executors: Vec<Executor>,
+        wanted: Receiver<usize>,
+    ) -> Result<Self, StartError> {
+        if let Err(error) = self.bring_up() {
+            // The refusal counts; a log that cannot be written either does not change it.
+            let _log_error = self.close();
+            return Err(error);
+        }
+        if let Err(error) = self.launch(executors, wanted) {
+            // What is on the disk is for the next try.
+            self.persistence = Persistence::default();
+            let _nothing_to_sum_up = self.stop("start_refused");
+            return Err(error);
+        }
+        let supervised = self.options.supervised.as_ref();
+        if let Some(restarted) = supervised.and_then(|it| it.runs()) {
+            self.record(restarted);
+        }
+        Ok(self)
+    }
+
     /// Constructs and initialises all, then starts all. A component that traps or panics is in
     /// ERROR and the rest goes on; one that says no stops the whole start.
-    pub(super) fn bring_up(&mut self) -> Result<(), StartError> {
+    fn bring_up(&mut self) -> Result<(), StartError> {
         for (name, members) in &self.applications {
             self.record(Event::RunStarted {
                 application: name.clone(),
@@ -91,6 +116,12 @@ impl System {
                 "{dropped} symptoms were not judged: too many came at once"
             ));
         }
+        let not_recorded = self.recording.as_ref().map_or(0, |it| it.dropped());
+        if not_recorded > 0 {
+            self.notice(&format!(
+                "{not_recorded} data were not recorded: they came faster than they could be written"
+            ));
+        }
         let events_lost = self.environment.events.lost();
         self.environment.events.record(
             self.environment.clock.now_ns(),
@@ -151,7 +182,7 @@ impl System {
         })
     }
 
-    pub(super) fn launch(
+    fn launch(
         &mut self,
         executors: Vec<Executor>,
         wanted: Receiver<usize>,

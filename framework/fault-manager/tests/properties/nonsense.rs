@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use fault_manager::{
     Action, ActionId, ActionOutcome, Cause, DetectorId, Effect, Evidence, FaultId, FaultManager,
-    FaultState, Observation, Scope, Symptom,
+    FaultState, Observation, OperatorOrder, Scope, Symptom,
 };
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -22,6 +22,14 @@ fn kinds() -> impl Strategy<Value = FaultKind> {
         Just(FaultKind::ErrorReturn),
         Just(FaultKind::Hang),
         Just(FaultKind::Stale),
+    ]
+}
+
+fn orders() -> impl Strategy<Value = OperatorOrder> {
+    prop_oneof![
+        Just(OperatorOrder::Reset),
+        Just(OperatorOrder::Stop),
+        proptest::option::of(0..3_usize).prop_map(|secondary| OperatorOrder::Replace { secondary }),
     ]
 }
 
@@ -67,6 +75,10 @@ fn observations() -> impl Strategy<Value = Observation> {
         }),
         1 => (0..60_u64).prop_map(|id| Observation::Clear(Some(FaultId(id)))),
         1 => Just(Observation::Clear(None)),
+        3 => (0..8_usize, orders()).prop_map(|(component, order)| Observation::Ordered {
+            component,
+            order,
+        }),
         2 => Just(Observation::Tick),
     ]
 }

@@ -1,10 +1,10 @@
 //! Answers as a person reads them. What comes is another program's: a part that is missing or of
 //! another kind is shown as it is, or not at all.
 
-use std::fmt::Write as _;
-
 use container::control::Request;
 use serde_json::{Map, Value};
+
+use crate::commands::words::{parts, table, word};
 
 /// Columns of the list: heading, and where in a verdict the text stands.
 const COLUMNS: [(&str, &str); 6] = [
@@ -22,7 +22,7 @@ pub(super) fn of(request: &Request, content: &Map<String, Value>) -> String {
         Request::FaultList => list(content.get("faults")),
         Request::FaultShow { .. } => {
             let mut text = String::new();
-            show(&mut text, 0, content.get("fault").unwrap_or(&Value::Null));
+            parts(&mut text, 0, content.get("fault").unwrap_or(&Value::Null));
             text
         }
         Request::FaultClear { .. } => cleared(content.get("cleared")),
@@ -30,11 +30,7 @@ pub(super) fn of(request: &Request, content: &Map<String, Value>) -> String {
             let number = content.get("injection").map_or_else(String::new, word);
             format!("injection {number} was accepted\n")
         }
-        Request::Status => {
-            let mut text = String::new();
-            show(&mut text, 0, content.get("status").unwrap_or(&Value::Null));
-            text
-        }
+        _ => String::new(),
     }
 }
 
@@ -52,18 +48,7 @@ fn list(faults: Option<&Value>) -> String {
         })
     });
     let rows: Vec<[String; COLUMNS.len()]> = std::iter::once(headings).chain(rows).collect();
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
-    let widths: Vec<usize> = (0..COLUMNS.len()).filter_map(width).collect();
-    let mut text = String::new();
-    for row in &rows {
-        let cells = row.iter().zip(&widths);
-        let cells: Vec<String> = cells
-            .map(|(cell, width)| format!("{cell:width$}"))
-            .collect();
-        // Writing to a text does not fail.
-        let _infallible = writeln!(text, "{}", cells.join("  ").trim_end());
-    }
-    text
+    table(&rows, |_column| false)
 }
 
 fn cause(cause: &Value) -> String {
@@ -80,42 +65,6 @@ fn cleared(ids: Option<&Value>) -> String {
         true => "nothing was to be cleared\n".to_owned(),
         false => format!("cleared {}\n", ids.join(", ")),
     }
-}
-
-/// Everything, a line for each part, indented by `depth`.
-fn show(text: &mut String, depth: usize, value: &Value) {
-    let indent = "  ".repeat(depth);
-    let mut part = |name: &str, value: &Value| {
-        let nested = match value {
-            Value::Object(parts) => !parts.is_empty(),
-            Value::Array(parts) => !parts.is_empty(),
-            _ => false,
-        };
-        let _infallible = match nested {
-            true => writeln!(text, "{indent}{name}:"),
-            false => writeln!(text, "{indent}{name}: {}", word(value)),
-        };
-        if nested {
-            show(text, depth + 1, value);
-        }
-    };
-    match value {
-        Value::Object(parts) => parts.iter().for_each(|(name, value)| part(name, value)),
-        Value::Array(parts) => parts.iter().for_each(|value| part("-", value)),
-        single => {
-            let _infallible = writeln!(text, "{indent}{}", word(single));
-        }
-    }
-}
-
-/// One word or number, without anything that a terminal would obey.
-fn word(value: &Value) -> String {
-    let text = match value {
-        Value::Null => return String::new(),
-        Value::String(text) => text.clone(),
-        other => other.to_string(),
-    };
-    text.replace(char::is_control, "\u{FFFD}")
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ const UNITS: [(&str, f64); 7] = [
 ];
 
 /// Reads a duration; what is wrong is said in words.
-pub(super) fn parse(text: &str) -> Result<Duration, String> {
+pub(in crate::commands) fn parse(text: &str) -> Result<Duration, String> {
     let text = text.trim();
     let split = text
         .find(|letter: char| letter.is_ascii_alphabetic())

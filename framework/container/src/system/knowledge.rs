@@ -1,0 +1,83 @@
+//! What is known of a running system.
+
+use std::ops::Range;
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::System;
+use crate::control::RunningSystem;
+use crate::status::ComponentStatus;
+use crate::summary::{ApplicationSummary, ComponentSummary, Summary, application_state};
+use crate::supervision::Supervisor;
+use crate::world::World;
+
+impl System {
+    /// The name of the application; of several, all of them with `+` in between.
+    pub fn name(&self) -> &str {
+        &self.specification.name
+    }
+
+    /// What the container knows of each component.
+    pub fn statuses(&self) -> &[Arc<ComponentStatus>] {
+        &self.statuses
+    }
+
+    /// Time by the application's clock.
+    pub fn now(&self) -> Duration {
+        self.environment.clock.now()
+    }
+
+    /// The fault manager's shell.
+    pub fn supervisor(&self) -> &Arc<Supervisor> {
+        &self.supervisor
+    }
+
+    /// What an operator may ask of it while it runs.
+    pub fn control(&self) -> RunningSystem {
+        RunningSystem {
+            meter: Arc::clone(&self.meter),
+            links: Arc::clone(&self.links),
+            began: self.began,
+            restarts: self.restarts(),
+            specification: self.specification.clone(),
+            applications: self.applications.clone(),
+            interfaces: Arc::clone(&self.interfaces),
+            statuses: self.statuses.clone(),
+            supervisor: Arc::clone(&self.supervisor),
+        }
+    }
+
+    /// The world, if there is one.
+    pub fn world(&self) -> Option<&Arc<World>> {
+        self.world.as_ref()
+    }
+
+    pub(super) fn restarts(&self) -> u32 {
+        (self.options.supervised.as_ref()).map_or(0, |it| it.restarts())
+    }
+
+    pub(super) fn summary(&self, ended_by: &'static str) -> Summary {
+        let application = |members: &Range<usize>| ApplicationSummary {
+            state: application_state(&self.statuses[members.clone()]),
+            ended_by,
+            time_s: self.now().as_secs_f64(),
+            clock: self.options.clock.name(),
+            seed: self.options.seed,
+            events_lost: self.environment.events.lost(),
+        };
+        let applications = self.applications.iter();
+        Summary {
+            applications: applications
+                .map(|(name, members)| (name.clone(), application(members)))
+                .collect(),
+            components: self
+                .statuses
+                .iter()
+                .map(|status| (status.name.clone(), ComponentSummary::of(status)))
+                .collect(),
+            restarts: self.restarts(),
+            robot: self.world.as_ref().map(|world| world.summary()),
+            recording: None,
+        }
+    }
+}
