@@ -89,15 +89,7 @@ impl System {
         let world = outside.or_else(|| simulation.map(|it| Arc::new(World::new(it, real))));
         let (recorder, recorded) = options.recorder();
         let (events, writer) = options.open_events(recorded)?;
-        let run_time = supervised.as_ref().map(|it| it.run_time());
-        let score = options.score.clone();
-        let environment = (options.clock).environment(
-            events,
-            world.clone(),
-            run_time.unwrap_or_default(),
-            score.clone(),
-        );
-        let environment = Arc::new(environment);
+        let environment = options.environment(events, world.clone());
         let applications = Applications::new(applications);
         let specification = &applications.specification;
         let assembly = assemble_together(
@@ -114,12 +106,7 @@ impl System {
         inject(&injections, &assembly, &environment).map_err(StartError::Assembly)?;
         let (supervisor, wanted) =
             supervise(&applications, &assembly, &environment).map_err(StartError::Assembly)?;
-        if let Some(score) = &score {
-            score
-                .bind(&applications.specification, &assembly)
-                .map_err(StartError::Assembly)?;
-            environment.clock.advance_to(score.first_ns());
-        }
+        recording::play(&applications, &assembly, &environment)?;
         let recording = recorder
             .map(|it| recording::record(it, &applications, &assembly, &environment, &options));
         let recording = recording.transpose()?;

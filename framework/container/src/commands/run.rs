@@ -286,7 +286,7 @@ fn watch_signals() -> Result<Arc<AtomicBool>, Failed> {
 }
 
 /// Where libraries are found and how they are probed.
-pub(super) fn libraries(library_path: &[PathBuf]) -> LibraryOptions {
+pub(in crate::commands) fn libraries(library_path: &[PathBuf]) -> LibraryOptions {
     LibraryOptions {
         search: LibrarySearch::new(library_folders(library_path)),
         executable: std::env::current_exe().ok(),

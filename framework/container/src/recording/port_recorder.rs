@@ -148,6 +148,11 @@ impl Track {
         chunk.commit_all();
     }
 
+    /// How full it is, in percent.
+    pub(super) fn fill_percent(&self) -> usize {
+        100 * self.ring.slots() / self.ring.buffer().capacity()
+    }
+
     /// Whether there is no room for another datum.
     pub(super) fn is_full(&self) -> bool {
         self.ring.slots() + self.entry_bytes > self.ring.buffer().capacity()

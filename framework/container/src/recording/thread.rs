@@ -20,9 +20,15 @@ use crate::component::Environment;
 use crate::event_log::{Event, Line};
 use crate::wake::Wake;
 
-/// How often the rings are emptied: a tenth of what they hold at a hundred times the rate of the
-/// reference robot comes in this time, and waking up costs little so.
-const LOOK_PERIOD: Duration = Duration::from_millis(50);
+/// How often the rings are emptied where little comes: waking up costs hardly anything so.
+const LONGEST_LOOK_PERIOD: Duration = Duration::from_millis(50);
+
+/// How often where much comes, and at the beginning, when that is not known.
+const SHORTEST_LOOK_PERIOD: Duration = Duration::from_millis(1);
+
+/// A ring that is so full is emptied twice as often from then on; one of which half as much would
+/// come in twice the time is not. There is room for a disk that takes three times as long once.
+const BUSY_PERCENT: usize = 25;
 
 /// What was written this long ago is in the file whatever happens to the process.
 const FLUSH_PERIOD: Duration = Duration::from_secs(1);
@@ -155,7 +161,10 @@ enum Next {
 impl Writing {
     fn run(mut self, shared: &Shared, wake: &Wake) -> RecordingSummary {
         let mut flushed = Instant::now();
+        let mut period = SHORTEST_LOOK_PERIOD;
         loop {
+            let fill = self.tracks.iter().map(Track::fill_percent).max();
+            period = look_period(period, fill.unwrap_or(0));
             // Before the time is taken: what was recorded until it was asked to stop is written.
             let stopping = shared.stopping.load(Ordering::Acquire);
             let until_ns = match stopping {
@@ -172,7 +181,7 @@ impl Writing {
             }
             wake.take();
             if !self.tracks.iter().any(Track::is_full) {
-                wake.sleep(LOOK_PERIOD);
+                wake.sleep(period);
             }
         }
     }
@@ -310,5 +319,38 @@ impl Writing {
 
     fn finish(self) -> RecordingSummary {
         self.sinks.finish()
+    }
+}
+
+/// How long to sleep until the next look, after one that found the fullest ring so full.
+fn look_period(period: Duration, fill_percent: usize) -> Duration {
+    if fill_percent > BUSY_PERCENT {
+        (period / 2).max(SHORTEST_LOOK_PERIOD)
+    } else if 2 * fill_percent < BUSY_PERCENT {
+        (period * 2).min(LONGEST_LOOK_PERIOD)
+    } else {
+        period
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rings_are_emptied_before_they_are_full() {
+        // So much of the fullest ring comes in a millisecond.
+        for (percent_in_ms, longest_ms) in [(0, 50), (1, 25), (6, 4), (30, 1), (90, 1)] {
+            let mut period = SHORTEST_LOOK_PERIOD;
+            for _ in 0..20 {
+                let fill = percent_in_ms * period.as_millis() as usize;
+                assert!(fill < 100, "{percent_in_ms}: {period:?}");
+                period = look_period(period, fill);
+            }
+            assert!(
+                period.as_millis() <= longest_ms,
+                "{percent_in_ms}: {period:?}"
+            );
+        }
     }
 }
