@@ -144,7 +144,7 @@ fn are_the_same_byte_for_byte_in_the_same_simulated_run() {
         let application = counting();
         let file = application.folder().join(name);
         let path = file.to_str().expect("a path of this test");
-        application
+        let _outcome = application
             .run(&["--clock", "simulated", "--for", "2s", "--record", path])
             .ended_well();
         std::fs::read(&file).expect("the recording")

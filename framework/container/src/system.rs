@@ -3,6 +3,7 @@
 mod agenda;
 mod applications;
 mod options;
+mod outcome;
 mod persistence;
 mod real_time;
 mod recording;
@@ -26,7 +27,7 @@ use crate::lane::{Crew, Lane, remaining};
 use crate::library::PortDescription;
 use crate::recording::RecordingThread;
 use crate::status::ComponentStatus;
-use crate::summary::{ApplicationSummary, ComponentSummary, Summary, application_state};
+use crate::summary::Summary;
 use crate::supervision::{ManagerThreads, Supervisor};
 use crate::world::World;
 
@@ -264,54 +265,5 @@ impl System {
     fn record(&self, event: Event) {
         let now_ns = self.environment.clock.now_ns();
         self.environment.events.record(now_ns, event);
-    }
-
-    fn is_over(&self) -> bool {
-        let reached = self
-            .world
-            .as_ref()
-            .is_some_and(|world| world.has_reached_target());
-        let elapsed = self
-            .options
-            .duration
-            .is_some_and(|duration| self.now() >= duration);
-        reached || elapsed
-    }
-
-    fn reason(&self) -> &'static str {
-        let reached = self
-            .world
-            .as_ref()
-            .is_some_and(|world| world.has_reached_target());
-        if reached {
-            "target_reached"
-        } else {
-            "duration_elapsed"
-        }
-    }
-
-    fn summary(&self, ended_by: &'static str) -> Summary {
-        let application = |members: &Range<usize>| ApplicationSummary {
-            state: application_state(&self.statuses[members.clone()]),
-            ended_by,
-            time_s: self.now().as_secs_f64(),
-            clock: self.options.clock.name(),
-            seed: self.options.seed,
-            events_lost: self.environment.events.lost(),
-        };
-        let applications = self.applications.iter();
-        Summary {
-            applications: applications
-                .map(|(name, members)| (name.clone(), application(members)))
-                .collect(),
-            components: self
-                .statuses
-                .iter()
-                .map(|status| (status.name.clone(), ComponentSummary::of(status)))
-                .collect(),
-            restarts: (self.options.supervised.as_ref()).map_or(0, |it| it.restarts()),
-            robot: self.world.as_ref().map(|world| world.summary()),
-            recording: None,
-        }
     }
 }

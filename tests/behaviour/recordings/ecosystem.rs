@@ -113,7 +113,7 @@ fn reads_a_file_that_was_cut() {
     let file = application.folder().join("run.mcap");
     let path = file.to_str().expect("a path of this test");
     let arguments = ["--clock", "simulated", "--for", "120s", "--record", path];
-    application.run(&arguments).ended_well();
+    let _outcome = application.run(&arguments).ended_well();
     let whole = std::fs::read(&file).expect("the recording");
     std::fs::write(&file, &whole[..whole.len() * 3 / 5]).expect("a shorter one");
     let found = decoded(&python, &file, "cut");

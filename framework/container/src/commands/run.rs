@@ -3,6 +3,7 @@
 pub(super) mod applications;
 mod duration;
 mod failure;
+mod libraries;
 mod live;
 mod models;
 mod recording;
@@ -18,9 +19,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
-use container::assembly::LibraryOptions;
 use container::control::Server;
-use container::library::LibrarySearch;
 use container::summary::Summary;
 use container::system::{Application, ClockKind, RunOptions, StateOptions, System};
 use crossbeam::channel::bounded;
@@ -31,6 +30,8 @@ use super::problems;
 use applications::Sources;
 use failure::unwritable;
 pub(super) use failure::{Failed, exit_code, refused};
+pub(in crate::commands) use libraries::libraries;
+pub use libraries::library_folders;
 use live::Watcher;
 use recording::RecordingArguments;
 use supervised::SupervisionArguments;
@@ -40,9 +41,6 @@ const REFRESH_PERIOD: Duration = Duration::from_millis(100);
 
 /// Lines that may wait for the view; a view that lags loses lines, the event file does not.
 const ECHO_QUEUE: usize = 1024;
-
-/// Folders for libraries by environment, separated by colons.
-const LIBRARY_PATH_VARIABLE: &str = "STEADFAST_LIBRARY_PATH";
 
 /// What `steadfast run` is asked to do.
 #[derive(Debug, Args)]
@@ -283,30 +281,6 @@ fn watch_signals() -> Result<Arc<AtomicBool>, Failed> {
             })?;
     }
     Ok(asked)
-}
-
-/// Where libraries are found and how they are probed.
-pub(in crate::commands) fn libraries(library_path: &[PathBuf]) -> LibraryOptions {
-    LibraryOptions {
-        search: LibrarySearch::new(library_folders(library_path)),
-        executable: std::env::current_exe().ok(),
-    }
-}
-
-/// Folders of libraries: those given, those of the environment, then that of this executable.
-pub fn library_folders(given: &[PathBuf]) -> Vec<PathBuf> {
-    let mut folders = given.to_vec();
-    if let Some(variable) = std::env::var_os(LIBRARY_PATH_VARIABLE) {
-        folders.extend(std::env::split_paths(&variable));
-    }
-    let executable = std::env::current_exe().ok();
-    folders.extend(
-        executable
-            .as_deref()
-            .and_then(Path::parent)
-            .map(PathBuf::from),
-    );
-    folders
 }
 
 fn write(path: &Path, content: &[u8]) -> Result<(), Failed> {

@@ -75,7 +75,7 @@ pub fn run(arguments: &RecordingArguments) -> ExitCode {
             flood: Duration::from_secs(1),
         },
         false => Extent {
-            rounds: 8,
+            rounds: 5,
             measured: Duration::from_secs(20),
             flood: Duration::from_secs(10),
         },
