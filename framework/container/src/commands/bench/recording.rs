@@ -61,8 +61,10 @@ struct Extent {
 struct Study {
     machine: Machine,
     rounds: Vec<Round>,
-    /// How much more processor time recording takes, in percent: the median of all rounds.
+    /// How much more processor time recording takes, in percent: medians of all rounds.
     cost_percent: f64,
+    /// What the thread that writes takes of the time without a recording, in percent: likewise.
+    writer_percent: f64,
     flood: Flood,
 }
 
@@ -101,14 +103,21 @@ fn study(arguments: &RecordingArguments, extent: Extent) -> io::Result<Study> {
     progress.set_message("a hundred times the data");
     let flood = flood::run(arguments, &file, folder.path(), extent.flood)?;
     progress.finish_and_clear();
-    let mut costs: Vec<f64> = measured.iter().map(Round::cost_percent).collect();
-    costs.sort_by(f64::total_cmp);
+    let [without, with, writer] = [0, 1, 2].map(|figure| median(&measured, figure));
     Ok(Study {
         machine: Machine::here(),
-        cost_percent: costs[costs.len() / 2],
+        cost_percent: 100.0 * (with / without - 1.0),
+        writer_percent: 100.0 * writer / without,
         rounds: measured,
         flood,
     })
+}
+
+/// The median of one of the figures of all rounds, of which there is one at least.
+fn median(rounds: &[Round], figure: usize) -> f64 {
+    let mut figures: Vec<f64> = rounds.iter().map(|it| it.figures()[figure]).collect();
+    figures.sort_by(f64::total_cmp);
+    figures[figures.len() / 2]
 }
 
 /// On standard error, and only if that is a terminal.

@@ -20,7 +20,11 @@ pub(super) fn write(output: &mut impl Write, study: &Study) -> io::Result<()> {
             round.cost_percent()
         )?;
     }
-    writeln!(output, "  median cost: {:.1} %\n", study.cost_percent)?;
+    writeln!(
+        output,
+        "  by medians: {:.1} % more, of which the writer is {:.1} %\n",
+        study.cost_percent, study.writer_percent
+    )?;
     let flood = &study.flood;
     writeln!(
         output,
