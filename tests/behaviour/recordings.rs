@@ -2,6 +2,7 @@
 
 mod black_box;
 mod ecosystem;
+mod replay;
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -18,6 +18,7 @@ mod record_file;
 mod recorder;
 mod sinks;
 mod thread;
+mod writing;
 
 pub use options::{BlackBoxOptions, RecordingOptions};
 pub use port_recorder::{EventRecorder, PortRecorder};

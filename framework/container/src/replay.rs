@@ -10,6 +10,8 @@
 mod player;
 mod routes;
 mod score;
+mod state;
 
 pub use player::Player;
-pub use score::{RecordedVerdict, Score};
+pub use score::Score;
+pub use state::RecordedVerdict;

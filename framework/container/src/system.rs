@@ -4,6 +4,7 @@ mod agenda;
 mod applications;
 mod knowledge;
 mod options;
+mod outcome;
 mod persistence;
 mod real_time;
 mod recording;
@@ -93,8 +94,7 @@ impl System {
         let world = outside.or_else(|| simulation.map(|it| Arc::new(World::new(it, real))));
         let (recorder, recorded) = options.recorder();
         let (events, writer) = options.open_events(recorded)?;
-        let score = options.score.clone();
-        let environment = Arc::new(options.environment(events, world.clone()));
+        let environment = options.environment(events, world.clone());
         let applications = Applications::new(applications);
         let specification = &applications.specification;
         let assembly = assemble_together(
@@ -111,12 +111,7 @@ impl System {
         inject(&injections, &assembly, &environment).map_err(StartError::Assembly)?;
         let (supervisor, wanted) =
             supervise(&applications, &assembly, &environment).map_err(StartError::Assembly)?;
-        if let Some(score) = &score {
-            score
-                .bind(&applications.specification, &assembly)
-                .map_err(StartError::Assembly)?;
-            environment.clock.advance_to(score.first_ns());
-        }
+        recording::play(&applications, &assembly, &environment)?;
         let recording = recorder
             .map(|it| recording::record(it, &applications, &assembly, &environment, &options));
         let recording = recording.transpose()?;
@@ -231,29 +226,5 @@ impl System {
     fn record(&self, event: Event) {
         let now_ns = self.environment.clock.now_ns();
         self.environment.events.record(now_ns, event);
-    }
-
-    fn is_over(&self) -> bool {
-        let reached = self
-            .world
-            .as_ref()
-            .is_some_and(|world| world.has_reached_target());
-        let elapsed = self
-            .options
-            .duration
-            .is_some_and(|duration| self.now() >= duration);
-        reached || elapsed
-    }
-
-    fn reason(&self) -> &'static str {
-        let reached = self
-            .world
-            .as_ref()
-            .is_some_and(|world| world.has_reached_target());
-        if reached {
-            "target_reached"
-        } else {
-            "duration_elapsed"
-        }
     }
 }

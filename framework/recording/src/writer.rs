@@ -31,7 +31,8 @@ pub struct RecordingWriter {
     path: PathBuf,
     writer: Writer<BufWriter<File>>,
     topics: BTreeMap<Topic, u16>,
-    sequences: BTreeMap<u16, u32>,
+    /// How many messages each channel has, by its number.
+    sequences: Vec<u32>,
     messages: u64,
     bytes: u64,
 }
@@ -60,6 +61,8 @@ impl RecordingWriter {
             .profile("")
             .library(concat!("steadfast ", env!("CARGO_PKG_VERSION")))
             .chunk_size(Some(CHUNK_BYTES))
+            // Chunks have checksums of their own; one over all of them would be the same work again.
+            .calculate_data_section_crc(false)
             // A chunk is in the file whole or not at all.
             .disable_seeking(true);
         let file = BufWriter::with_capacity(BUFFER_BYTES, file);
@@ -75,7 +78,7 @@ impl RecordingWriter {
             path: path.to_owned(),
             writer,
             topics: BTreeMap::new(),
-            sequences: BTreeMap::new(),
+            sequences: Vec::new(),
             messages: 0,
             bytes: 0,
         };
@@ -122,7 +125,11 @@ impl RecordingWriter {
         publish_ns: u64,
         json: &[u8],
     ) -> Result<(), WriteError> {
-        let sequence = self.sequences.entry(channel.0).or_default();
+        let number = usize::from(channel.0);
+        if self.sequences.len() <= number {
+            self.sequences.resize(number + 1, 0);
+        }
+        let sequence = &mut self.sequences[number];
         *sequence = sequence.wrapping_add(1);
         let header = MessageHeader {
             channel_id: channel.0,

@@ -9,11 +9,11 @@ use rtrb::{Consumer, Producer, RingBuffer};
 use crate::wake::Wake;
 
 /// What a ring holds: half a second of a port at a hundred times the rate of the reference robot's
-/// (5 kHz) with data of 84 bytes, ten times as long as the writing thread sleeps.
+/// (5 kHz) with data of 84 bytes.
 const RING_BYTES: usize = 256 << 10;
 
-/// Data of any size that a ring holds at least: a camera's of more than a second.
-const LEAST_DATA: usize = 16;
+/// Data of any size that a ring holds at least: a camera's of a second at 30 Hz.
+const LEAST_DATA: usize = 32;
 
 /// When a datum was seen and when it was written, before the datum itself.
 const HEADER_BYTES: usize = 16;
@@ -148,6 +148,11 @@ impl Track {
         chunk.commit_all();
     }
 
+    /// How full it is, in percent.
+    pub(super) fn fill_percent(&self) -> usize {
+        100 * self.ring.slots() / self.ring.buffer().capacity()
+    }
+
     /// Whether there is no room for another datum.
     pub(super) fn is_full(&self) -> bool {
         self.ring.slots() + self.entry_bytes > self.ring.buffer().capacity()
@@ -197,25 +202,25 @@ mod tests {
         let reader = Arc::new(Wake::default());
         let (mut recorder, mut track) = ring(1 << 20, Some(Arc::clone(&reader)));
         let writer = std::thread::spawn(move || {
-            for number in 0..40 {
+            for number in 0..80 {
                 recorder.record(number, number, &vec![0; 1 << 20]);
             }
             recorder
         });
         let mut numbers = Vec::new();
-        while numbers.len() < 40 {
+        while numbers.len() < 80 {
             reader.take();
             match taken(&mut track) {
                 Some((seen_ns, _, _)) => numbers.push(seen_ns),
                 None => reader.sleep(Duration::from_millis(10)),
             }
         }
-        assert_eq!(numbers, (0..40).collect::<Vec<_>>());
+        assert_eq!(numbers, (0..80).collect::<Vec<_>>());
         let mut recorder = writer.join().unwrap();
         drop(track);
         for number in 0..40 {
             recorder.record(number, number, &vec![0; 1 << 20]);
         }
-        assert_eq!(recorder.dropped.load(Ordering::Relaxed), 24);
+        assert_eq!(recorder.dropped.load(Ordering::Relaxed), 8);
     }
 }

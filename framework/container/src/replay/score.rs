@@ -1,18 +1,15 @@
 //! What is to be played, and when.
 
-use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use recording::{Message, ReadError, Reader, Topic, read};
-use serde::Serialize;
-use serde_json::Value;
-use system_model::specification::{ApplicationSpecification, Place, PortKind};
+use recording::{ReadError, read};
+use system_model::specification::{ApplicationSpecification, Place};
 
-use super::routes::{Route, Routes, find};
+use super::routes::find;
+use super::state::{Due, RecordedVerdict, State};
 use crate::assembly::{Assembly, AssemblyProblem};
-use crate::component::ComponentCell;
 
 /// A recording that is being played.
 pub struct Score {
@@ -20,45 +17,6 @@ pub struct Score {
     only: Option<String>,
     first_ns: u64,
     state: Mutex<State>,
-}
-
-/// A datum that a component is to write.
-#[derive(Debug)]
-pub(super) struct Due {
-    pub(super) port: u32,
-    pub(super) kind: PortKind,
-    pub(super) datum: Vec<u8>,
-}
-
-/// A fault as the recording has it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct RecordedVerdict {
-    /// Its number in that run.
-    pub id: u64,
-    /// The component that was to blame.
-    pub component: String,
-    /// Kind of fault.
-    pub kind: String,
-    /// When it was confirmed.
-    pub confirmed_ns: u64,
-}
-
-struct State {
-    reader: Reader,
-    next: Option<Message>,
-    routes: Routes,
-    components: Vec<Arc<ComponentCell>>,
-    /// By component: what it is to write in its next cycle.
-    due: Vec<Vec<Due>>,
-    /// By component: whether it has a cycle now.
-    cycles: Vec<bool>,
-    /// By component: those that have nothing in the recording and read what it writes.
-    readers: Vec<Vec<usize>>,
-    incarnations: BTreeMap<String, u64>,
-    verdicts: BTreeMap<u64, RecordedVerdict>,
-    data: u64,
-    last_ns: u64,
-    failure: Option<String>,
 }
 
 impl std::fmt::Debug for Score {
@@ -87,20 +45,7 @@ impl Score {
             },
             only,
             first_ns,
-            state: Mutex::new(State {
-                reader,
-                next,
-                routes: Routes::default(),
-                components: Vec::new(),
-                due: Vec::new(),
-                cycles: Vec::new(),
-                readers: Vec::new(),
-                incarnations: BTreeMap::new(),
-                verdicts: BTreeMap::new(),
-                data: 0,
-                last_ns: first_ns,
-                failure: None,
-            }),
+            state: Mutex::new(State::new(reader, next, first_ns)),
         })
     }
 
@@ -252,102 +197,5 @@ impl Score {
 
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl Route {
-    fn component(&self) -> usize {
-        match self {
-            Self::Written { component, .. } | Self::Arriving { component, .. } => *component,
-        }
-    }
-}
-
-impl State {
-    fn release(&mut self, message: &Message, token: u32) -> Result<(), String> {
-        let topic = message.topic();
-        if topic == Topic::Verdicts.name() {
-            self.note(&message.value);
-        } else if topic == Topic::States.name() {
-            self.begin_anew(&message.value, token);
-        }
-        let Some(route) = self.routes.by_topic.get_mut(topic) else {
-            return Ok(());
-        };
-        let component = route.component();
-        self.data += 1;
-        self.cycles[component] = true;
-        match route {
-            Route::Written {
-                port, kind, layout, ..
-            } => {
-                let mut datum = vec![0; layout.data_type().size];
-                layout
-                    .decode(&message.value, &mut datum)
-                    .map_err(|misfit| misfit.to_string())?;
-                let due = Due {
-                    port: *port,
-                    kind: *kind,
-                    datum,
-                };
-                self.due[component].push(due);
-                for reader in &self.readers[component] {
-                    self.cycles[*reader] = true;
-                }
-            }
-            Route::Arriving {
-                layout,
-                sender,
-                wake,
-                ..
-            } => {
-                let mut decoded = Ok(());
-                sender.send(message.publish_ns, u32::MAX, |datum| {
-                    decoded = layout.decode(&message.value, datum);
-                    decoded.is_ok()
-                });
-                decoded.map_err(|misfit| misfit.to_string())?;
-                if let Some(wake) = wake {
-                    wake.wake();
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Notes a verdict of the recorded run.
-    fn note(&mut self, verdict: &Value) {
-        let text = |key: &str| verdict[key].as_str().unwrap_or_default().to_owned();
-        let number = |key: &str| verdict[key].as_u64().unwrap_or_default();
-        if verdict["state"] == "PREFAILED" {
-            return;
-        }
-        let recorded = RecordedVerdict {
-            id: number("id"),
-            component: text("component"),
-            kind: text("kind"),
-            confirmed_ns: number("confirmed_ns"),
-        };
-        self.verdicts.insert(recorded.id, recorded);
-    }
-
-    /// Another incarnation writes from now on: what is compared with earlier data begins anew.
-    fn begin_anew(&mut self, state: &Value, token: u32) {
-        let (Some(name), Some(incarnation)) =
-            (state["component"].as_str(), state["incarnation"].as_u64())
-        else {
-            return;
-        };
-        let before = self.incarnations.insert(name.to_owned(), incarnation);
-        if before.is_none_or(|before| before == incarnation) {
-            return;
-        }
-        for cell in &self.components {
-            if let Some(mut component) = cell.enter(token, Duration::ZERO)
-                && component.name().as_ref() == name
-            {
-                component.services_mut().begin_taps_anew();
-            }
-        }
     }
 }

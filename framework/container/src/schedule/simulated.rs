@@ -1,5 +1,7 @@
 //! All executors on one thread, in simulated time.
 
+mod playing;
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
@@ -11,10 +13,11 @@ use crate::component::{ComponentCell, Environment, mark_lost};
 use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::guard::loss::LostThread;
-use crate::lane::{Lane, SETUP_TOKEN, Work};
+use crate::lane::{Lane, Work};
 use crate::replay::Score;
 use crate::supervision::Supervisor;
 use crate::world::World;
+use playing::{Played, is_played};
 
 /// In simulated time a cycle of an executor without a period takes this long; without it two
 /// components that wake each other would stop the clock.
@@ -99,12 +102,6 @@ impl Simulated {
         }
         let wanted = executor.kind.has_period() || executor.wake.is_pending();
         wanted.then(|| self.due_ns[index])
-    }
-
-    /// The recording by which an executor goes.
-    fn score_of(&self, index: usize) -> Option<&Score> {
-        let (score, played) = self.played.as_ref()?;
-        played[index].then_some(score)
     }
 
     /// The next executor by time; the order of `executors` decides among equals.
@@ -238,54 +235,7 @@ impl Work for Simulated {
     }
 }
 
-/// What of a recording was played.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Played {
-    /// Nothing: something else comes before.
-    Nothing,
-    /// What comes next.
-    Some,
-    /// There is nothing more.
-    All,
-}
-
 impl Simulated {
-    /// When the next message of the recording comes.
-    fn cue_ns(&self) -> Option<u64> {
-        self.played.as_ref()?.0.next_ns()
-    }
-
-    /// Whether everything of the recording was played, and what is next by itself comes after it.
-    fn is_over(&self, next_ns: Option<u64>) -> bool {
-        let over = |score: &Score| {
-            score.next_ns().is_none() && next_ns.is_none_or(|next_ns| next_ns > score.last_ns())
-        };
-        self.played.as_ref().is_some_and(|(score, _)| over(score))
-    }
-
-    /// Lets come what the recording has next, unless something else comes before.
-    fn play(&self, next_ns: Option<u64>, lane: &Lane) -> Played {
-        let Some((score, _)) = &self.played else {
-            return Played::Nothing;
-        };
-        if self.is_over(next_ns) {
-            return Played::All;
-        }
-        let Some(cue_ns) = score.next_ns() else {
-            return Played::Nothing;
-        };
-        let now_ns = self.environment.clock.now_ns();
-        // What came at this very time comes before the cycles that read and write it.
-        if next_ns.is_some_and(|next_ns| next_ns < cue_ns.max(now_ns)) {
-            return Played::Nothing;
-        }
-        if cue_ns > now_ns && !self.advance(cue_ns) {
-            return Played::All;
-        }
-        score.release(self.environment.clock.now_ns(), lane.token());
-        Played::Some
-    }
-
     fn idle_until_end(&self, lane: &Lane) {
         /// Steps in which an idle run goes to its end, so that it can be stopped.
         const IDLE_STEP_NS: u64 = 100_000_000;
@@ -310,16 +260,4 @@ impl HasPeriod for ExecutionKind {
     fn has_period(self) -> bool {
         matches!(self, Self::Periodic | Self::PeriodicShared)
     }
-}
-
-/// Whether all components of an executor are played.
-fn is_played(executor: &Executor, score: &Score) -> bool {
-    let plays = |cell: &ComponentCell| {
-        let component = cell.enter(SETUP_TOKEN, Duration::ZERO);
-        component.is_some_and(|component| score.plays(component.name()))
-    };
-    executor
-        .members
-        .iter()
-        .all(|member| plays(&member.component))
 }

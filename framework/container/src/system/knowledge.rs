@@ -1,13 +1,11 @@
 //! What is known of a running system.
 
-use std::ops::Range;
 use std::sync::Arc;
 use std::time::Duration;
 
 use super::System;
 use crate::control::RunningSystem;
 use crate::status::ComponentStatus;
-use crate::summary::{ApplicationSummary, ComponentSummary, Summary, application_state};
 use crate::supervision::Supervisor;
 use crate::world::World;
 
@@ -54,30 +52,5 @@ impl System {
 
     pub(super) fn restarts(&self) -> u32 {
         (self.options.supervised.as_ref()).map_or(0, |it| it.restarts())
-    }
-
-    pub(super) fn summary(&self, ended_by: &'static str) -> Summary {
-        let application = |members: &Range<usize>| ApplicationSummary {
-            state: application_state(&self.statuses[members.clone()]),
-            ended_by,
-            time_s: self.now().as_secs_f64(),
-            clock: self.options.clock.name(),
-            seed: self.options.seed,
-            events_lost: self.environment.events.lost(),
-        };
-        let applications = self.applications.iter();
-        Summary {
-            applications: applications
-                .map(|(name, members)| (name.clone(), application(members)))
-                .collect(),
-            components: self
-                .statuses
-                .iter()
-                .map(|status| (status.name.clone(), ComponentSummary::of(status)))
-                .collect(),
-            restarts: self.restarts(),
-            robot: self.world.as_ref().map(|world| world.summary()),
-            recording: None,
-        }
     }
 }

@@ -38,31 +38,6 @@ impl ClockKind {
             Self::Simulated => "simulated",
         }
     }
-
-    /// What components share that run by this clock.
-    /// `run_time`: how long the run has lasted when this container comes into it.
-    pub(super) fn environment(
-        self,
-        events: EventLog,
-        world: Option<Arc<World>>,
-        run_time: Duration,
-        score: Option<Arc<Score>>,
-    ) -> Environment {
-        Environment {
-            clock: match self {
-                ClockKind::Real => Clock::real_since(run_time),
-                ClockKind::Simulated => Clock::simulated(),
-            },
-            events,
-            devices: Devices::new(world.clone()),
-            observations: Observations::default(),
-            injections: Injections::default(),
-            scenes: Scenes::default(),
-            world,
-            score,
-            busy: BusyTime::default(),
-        }
-    }
 }
 
 /// How an application is run.
@@ -100,14 +75,6 @@ pub struct StateOptions {
 }
 
 impl RunOptions {
-    /// What the components of the run share.
-    pub(super) fn environment(&self, events: EventLog, world: Option<Arc<World>>) -> Environment {
-        let run_time = self.supervised.as_ref().map(|it| it.run_time());
-        let run_time = run_time.unwrap_or_default();
-        self.clock
-            .environment(events, world, run_time, self.score.clone())
-    }
-
     /// What of a run's injections this container makes: one that goes on where another has died does
     /// not begin anew.
     pub(super) fn injections(&self, all: &[Injection]) -> Vec<Injection> {
@@ -115,6 +82,30 @@ impl RunOptions {
         let run_time = before.map_or(Duration::ZERO, |it| it.run_time());
         let to_come = |injection| still_to_come(injection, run_time);
         all.iter().filter_map(to_come).collect()
+    }
+
+    /// What the components share.
+    pub(super) fn environment(
+        &self,
+        events: EventLog,
+        world: Option<Arc<World>>,
+    ) -> Arc<Environment> {
+        // How long the run has lasted when this container comes into it.
+        let run_time = self.supervised.as_ref().map(|it| it.run_time());
+        Arc::new(Environment {
+            clock: match self.clock {
+                ClockKind::Real => Clock::real_since(run_time.unwrap_or_default()),
+                ClockKind::Simulated => Clock::simulated(),
+            },
+            events,
+            devices: Devices::new(world.clone()),
+            observations: Observations::default(),
+            injections: Injections::default(),
+            scenes: Scenes::default(),
+            world,
+            score: self.score.clone(),
+            busy: BusyTime::default(),
+        })
     }
 
     /// The recording that is asked for, and where events go for it.

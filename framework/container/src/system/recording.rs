@@ -53,6 +53,24 @@ pub(super) fn record(
     recorder.start(environment, components, about(applications, options))
 }
 
+/// Finds the ports of the recording that is played, if one is, and lets time begin where it does.
+///
+/// # Errors
+/// If the recording does not fit.
+pub(super) fn play(
+    applications: &Applications,
+    assembly: &Assembly,
+    environment: &Environment,
+) -> Result<(), StartError> {
+    if let Some(score) = &environment.score {
+        score
+            .bind(&applications.specification, assembly)
+            .map_err(StartError::Assembly)?;
+        environment.clock.advance_to(score.first_ns());
+    }
+    Ok(())
+}
+
 /// What the file says of the run.
 fn about(applications: &Applications, options: &RunOptions) -> Vec<(&'static str, String)> {
     let mut about = vec![

@@ -72,7 +72,7 @@ fn a_file_that_is_cut_is_read_up_to_there() {
     for percent in [30, 60, 75] {
         std::fs::write(&path, &whole[..whole.len() * percent / 100]).unwrap();
         let mut reader = read(&path).unwrap();
-        let found = reader.by_ref().map(|it| it.unwrap()).count();
+        let found = reader.by_ref().filter(|it| it.is_ok()).count();
         assert!(reader.was_cut());
         assert!(found > last && found < 1001, "{found} at {percent} %");
         last = found;
