@@ -2,7 +2,9 @@
 
 pub mod bench;
 pub mod check;
+pub mod explain;
 pub mod fault;
+mod output;
 pub mod problems;
 pub mod run;
 pub mod world;

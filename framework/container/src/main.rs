@@ -10,6 +10,7 @@ use clap::{Parser, Subcommand};
 
 use commands::bench::{self, BenchArguments};
 use commands::check::{self, CheckArguments};
+use commands::explain::{self, ExplainArguments};
 use commands::fault::{self, FaultArguments};
 use commands::run::{self, RunArguments};
 use commands::world::{self, WorldArguments};
@@ -28,6 +29,8 @@ enum Command {
     Check(CheckArguments),
     /// Run one application, or several in one container.
     Run(Box<RunArguments>),
+    /// Explain what the rules do, and what would come of a fault, without a robot.
+    Explain(ExplainArguments),
     /// List, show, clear and inject faults of a running application.
     Fault(FaultArguments),
     /// Measure how good Steadfast is at what it does.
@@ -50,6 +53,7 @@ fn main() -> ExitCode {
     match Arguments::parse().command {
         Command::Check(arguments) => check::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Explain(arguments) => explain::run(&arguments),
         Command::Fault(arguments) => fault::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Host => container::host::host_main(),

@@ -43,6 +43,7 @@ mod stopping;
 mod symptoms;
 mod system;
 mod verdict;
+pub mod what_if;
 mod wording;
 
 pub use evidence::{Evidence, Number};

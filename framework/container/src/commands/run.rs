@@ -1,6 +1,6 @@
 //! `steadfast run`: brings applications up, watches them, stops them in order.
 
-mod applications;
+pub(super) mod applications;
 mod duration;
 mod failure;
 mod live;
@@ -27,8 +27,9 @@ use robot_simulation::Simulation;
 use system_profile::{Problem, load_world};
 
 use super::problems;
+use failure::refused;
+pub(super) use failure::unwritable;
 pub(super) use failure::{Failed, exit_code};
-use failure::{refused, unwritable};
 use live::Watcher;
 use supervised::SupervisionArguments;
 
@@ -213,7 +214,7 @@ fn conclude(arguments: &RunArguments, summary: &Summary) -> Result<(), Failed> {
 }
 
 /// Warnings do not stop a run, but a person should see them.
-fn show(found: &[Problem]) {
+pub(super) fn show(found: &[Problem]) {
     if !found.is_empty() {
         let _unread = writeln!(
             io::stderr(),

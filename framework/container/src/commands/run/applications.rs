@@ -11,9 +11,34 @@ use system_profile::{
 
 use super::{Failed, RunArguments, errors_on_terminal, exit_code, models, problems, show};
 
+/// The files that say what is run.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::commands) struct Files<'a> {
+    /// Application profiles.
+    pub applications: &'a [PathBuf],
+    /// Fault rules.
+    pub rules: &'a [PathBuf],
+    /// Injections.
+    pub inject: &'a [PathBuf],
+    /// Folders in which profiles that are referred to are searched as well.
+    pub search_path: &'a [PathBuf],
+}
+
+impl RunArguments {
+    /// The files of a run.
+    pub(super) fn files(&self) -> Files<'_> {
+        Files {
+            applications: &self.applications,
+            rules: &self.rules,
+            inject: &self.inject,
+            search_path: &self.search_path,
+        }
+    }
+}
+
 /// Loads all applications of a run.
 pub(super) fn load(arguments: &RunArguments) -> Result<Vec<Application>, Failed> {
-    let (mut applications, warnings) = read(arguments)?;
+    let (mut applications, warnings) = read(arguments.files())?;
     show(&warnings);
     for application in &mut applications {
         let (rules, specification) = (&application.rules, &application.specification);
@@ -23,26 +48,28 @@ pub(super) fn load(arguments: &RunArguments) -> Result<Vec<Application>, Failed>
 }
 
 /// Reads them, without their models; with warnings.
-pub(super) fn read(arguments: &RunArguments) -> Result<(Vec<Application>, Vec<Problem>), Failed> {
-    let files = (arguments.applications.iter())
-        .chain(&arguments.rules)
-        .chain(&arguments.inject);
-    for file in files {
+pub(in crate::commands) fn read(
+    files: Files<'_>,
+) -> Result<(Vec<Application>, Vec<Problem>), Failed> {
+    let all = (files.applications.iter())
+        .chain(files.rules)
+        .chain(files.inject);
+    for file in all {
         std::fs::File::open(file).map_err(|error| Failed {
             code: exit_code::FILE,
             text: format!("{} cannot be read: {error}", file.display()),
         })?;
     }
     let mut reading = Reading {
-        arguments,
+        files,
         options: LoadOptions {
-            search_paths: arguments.search_path.clone(),
+            search_paths: files.search_path.to_vec(),
             dangling: Severity::Error,
         },
         problems: Vec::new(),
         sound: true,
     };
-    let specifications: Vec<ApplicationSpecification> = (arguments.applications.iter())
+    let specifications: Vec<ApplicationSpecification> = (files.applications.iter())
         .filter_map(|file| reading.application(file))
         .collect();
     reading.check_names(&specifications);
@@ -50,7 +77,7 @@ pub(super) fn read(arguments: &RunArguments) -> Result<(Vec<Application>, Vec<Pr
         .map(|specification| reading.rules_of(specification, &specifications))
         .collect();
     if !reading.sound {
-        return Err(not_started(&arguments.applications, &reading.problems));
+        return Err(not_started(files.applications, &reading.problems));
     }
     Ok((applications, reading.problems))
 }
@@ -95,7 +122,7 @@ fn not_started(files: &[PathBuf], found: &[Problem]) -> Failed {
 
 /// Files being read.
 struct Reading<'run> {
-    arguments: &'run RunArguments,
+    files: Files<'run>,
     options: LoadOptions,
     problems: Vec<Problem>,
     /// Whether everything read so far can be used.
@@ -116,18 +143,18 @@ impl Reading<'_> {
         specification: &ApplicationSpecification,
         all: &[ApplicationSpecification],
     ) -> Application {
-        let arguments = self.arguments;
+        let given = self.files;
         let about = |files: &[PathBuf]| -> Vec<PathBuf> {
             let files = files.iter().cloned();
             files
                 .filter(|file| is_about(file, specification, all))
                 .collect()
         };
-        let outcome = load_rules(specification, &about(&arguments.rules), &self.options);
+        let outcome = load_rules(specification, &about(given.rules), &self.options);
         self.found(outcome.problems);
         self.sound &= outcome.rules.is_some();
         let mut injections = Vec::new();
-        for file in about(&arguments.inject) {
+        for file in about(given.inject) {
             let outcome = load_injections(specification, &file);
             self.found(outcome.problems);
             self.sound &= outcome.injections.is_some();
