@@ -32,3 +32,4 @@ mod stopping;
 mod supervised;
 mod tidy;
 mod two_cameras;
+mod what_if;

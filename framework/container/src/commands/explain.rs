@@ -14,6 +14,7 @@ use fault_manager::Scope;
 use fault_manager::what_if::{
     Assumptions, QueryError, Recoveries, Table, answer, input_port, parse,
 };
+use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
 use super::run::applications::{self, Files};
@@ -105,12 +106,29 @@ fn explain(arguments: &ExplainArguments) -> Result<(), Failed> {
 }
 
 fn all(arguments: &ExplainArguments, scopes: &[Scope]) -> Result<String, Failed> {
-    let table = Table::new(scopes, &assumptions(arguments, scopes)?);
+    let rows = scopes
+        .iter()
+        .map(|scope| scope.specification.components.len());
+    let bar = progress(rows.sum());
+    let table = Table::new(scopes, &assumptions(arguments, scopes)?, &mut |_| {
+        bar.inc(1)
+    });
+    bar.finish_and_clear();
     Ok(match arguments.format {
         Format::Text => table::text(scopes, &table),
         Format::Html => page::html(scopes, &table),
         Format::Json => pretty(&table::json(scopes, &table)),
     })
+}
+
+/// A bar on the error output, of so many components; hidden where that is no terminal.
+fn progress(rows: usize) -> ProgressBar {
+    let bar = ProgressBar::new(u64::try_from(rows).unwrap_or(u64::MAX));
+    let style = ProgressStyle::with_template("{wide_bar} {pos} of {len} components");
+    match style {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
 }
 
 fn one(arguments: &ExplainArguments, scopes: &[Scope], text: &str) -> Result<String, Failed> {

@@ -38,8 +38,8 @@ pub struct Cell {
 }
 
 impl Table {
-    /// Answers every question.
-    pub fn new(scopes: &[Scope], assumptions: &Assumptions) -> Self {
+    /// Answers every question; `done` is told of each row, that is complete then.
+    pub fn new(scopes: &[Scope], assumptions: &Assumptions, done: &mut dyn FnMut(&Row)) -> Self {
         let mut rows = Vec::new();
         for (application, scope) in scopes.iter().enumerate() {
             for (component, specification) in scope.specification.components.iter().enumerate() {
@@ -67,13 +67,15 @@ impl Table {
                     }
                     ports.into_iter().map(move |port| (port, fault))
                 });
-                rows.push(Row {
+                let row = Row {
                     application,
                     component,
                     name: specification.name.clone(),
                     cells: cells.map(|(port, fault)| cell(port, fault)).collect(),
                     loss: loss(scopes, application, component, assumptions),
-                });
+                };
+                done(&row);
+                rows.push(row);
             }
         }
         Self { rows }
