@@ -18,14 +18,15 @@ mod supposition;
 mod table;
 
 pub use answer::{Answer, ApplicationEnd, ComponentEnd};
-pub use query::{QueryError, input_port, parse};
+pub use query::{QueryError, find, input_port, parse};
 pub use stand_in::BEGIN;
 pub use supposition::{
     DELAY, ERROR_CODE, Inapplicable, LEAK_BYTES, SupposedFault, Supposition, slowness,
 };
 pub use table::{Cell, Row, Table};
 
-use crate::system::Scope;
+use crate::graph::{Graph, Level};
+use crate::system::{Scope, System};
 
 /// Whether the recoveries that the fault manager asks for succeed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -56,6 +57,26 @@ pub struct InputPort {
     pub component: usize,
     /// Name of the port.
     pub port: String,
+}
+
+/// Who else would come down if a component were stopped, by the dependency rules: application and
+/// component of each, and whether it would be destroyed, not only stopped.
+pub fn dependents(
+    scopes: &[Scope],
+    application: usize,
+    component: usize,
+) -> Vec<(usize, usize, bool)> {
+    let system = System::new(scopes);
+    let firsts = |application: usize| system.applications[application].members.start;
+    let mut levels = vec![Level::Up; system.components.len()];
+    levels[firsts(application) + component] = Level::Stopped;
+    let demands = Graph::new(scopes, &system).spread(&mut levels);
+    let who = demands.into_iter().map(|(index, demand)| {
+        let application = system.components[index].application;
+        let destroyed = demand.level == Level::Destroyed;
+        (application, index - firsts(application), destroyed)
+    });
+    who.collect()
 }
 
 /// What would be done about a fault, in these applications.

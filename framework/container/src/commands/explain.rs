@@ -1,8 +1,10 @@
 //! `steadfast explain`: what the rules make of an application, and what would come of a fault,
 //! without a robot.
 
+mod component;
 mod page;
 mod table;
+mod watched;
 mod what_if;
 
 use std::io::{self, Write as _};
@@ -10,12 +12,13 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
-use fault_manager::Scope;
+use component::Explanation;
 use fault_manager::what_if::{
-    Assumptions, QueryError, Recoveries, Table, answer, input_port, parse,
+    Assumptions, QueryError, Recoveries, Table, answer, find, input_port, parse,
 };
+use fault_manager::{FaultManager, Scope};
 use indicatif::{ProgressBar, ProgressStyle};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::run::applications::{self, Files};
 use super::run::{Failed, exit_code, show};
@@ -98,11 +101,39 @@ fn explain(arguments: &ExplainArguments) -> Result<(), Failed> {
     });
     let scopes: Vec<Scope> = scopes.collect();
     let text = match arguments.what_if.as_deref() {
-        None => return Err(refused("say --what-if")),
+        None => components(arguments, &scopes)?,
         Some(ALL) => all(arguments, &scopes)?,
         Some(question) => one(arguments, &scopes, question)?,
     };
     super::output::write(arguments.output.as_deref(), &text)
+}
+
+/// One component, or all.
+fn components(arguments: &ExplainArguments, scopes: &[Scope]) -> Result<String, Failed> {
+    let wanted = match &arguments.component {
+        Some(text) => vec![find(scopes, text).map_err(|error| misunderstood(&error))?],
+        None => {
+            let all = scopes.iter().enumerate().flat_map(|(application, scope)| {
+                (0..scope.specification.components.len()).map(move |one| (application, one))
+            });
+            all.collect()
+        }
+    };
+    let manager = FaultManager::new(scopes.to_vec());
+    let explained: Vec<Explanation> = wanted
+        .into_iter()
+        .map(|(application, one)| component::explain(scopes, &manager, application, one))
+        .collect();
+    match arguments.format {
+        Format::Text => {
+            let texts: Vec<String> = explained.iter().map(component::text).collect();
+            Ok(texts.join("\n"))
+        }
+        Format::Json => Ok(pretty(&json!({ "components": explained }))),
+        Format::Html => Err(refused(
+            "a page is made of the table of faults: write --what-if all, or --format text",
+        )),
+    }
 }
 
 fn all(arguments: &ExplainArguments, scopes: &[Scope]) -> Result<String, Failed> {

@@ -69,6 +69,14 @@ pub fn parse(scopes: &[Scope], text: &str) -> Result<Supposition, QueryError> {
     Ok(supposition)
 }
 
+/// Finds a component by its name: application and component.
+///
+/// # Errors
+/// That there is none of that name, or several.
+pub fn find(scopes: &[Scope], name: &str) -> Result<(usize, usize), QueryError> {
+    component(scopes, name)?.ok_or_else(|| unknown(scopes, name))
+}
+
 /// Reads `COMPONENT.PORT`, an input data port.
 ///
 /// # Errors
@@ -108,12 +116,16 @@ fn subject_of(
         return Ok((application, component, Some(port.to_owned())));
     }
     let name = subject.rsplit_once('.').map_or(subject, |(name, _)| name);
+    Err(unknown(scopes, name))
+}
+
+fn unknown(scopes: &[Scope], name: &str) -> QueryError {
     let names = scopes.iter().flat_map(|it| &it.specification.components);
     let names: Vec<&str> = names.map(|component| component.name.as_str()).collect();
-    Err(QueryError::Component {
+    QueryError::Component {
         name: name.to_owned(),
         known: names.join(", "),
-    })
+    }
 }
 
 fn component(scopes: &[Scope], name: &str) -> Result<Option<(usize, usize)>, QueryError> {
