@@ -4,6 +4,7 @@ pub mod bench;
 pub mod check;
 pub mod explain;
 pub mod fault;
+pub mod graph;
 mod output;
 pub mod problems;
 pub mod run;

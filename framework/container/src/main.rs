@@ -12,6 +12,7 @@ use commands::bench::{self, BenchArguments};
 use commands::check::{self, CheckArguments};
 use commands::explain::{self, ExplainArguments};
 use commands::fault::{self, FaultArguments};
+use commands::graph::{self, GraphArguments};
 use commands::run::{self, RunArguments};
 use commands::world::{self, WorldArguments};
 
@@ -31,6 +32,8 @@ enum Command {
     Run(Box<RunArguments>),
     /// Explain what the rules do, and what would come of a fault, without a robot.
     Explain(ExplainArguments),
+    /// Draw who runs where and what goes from whom to whom.
+    Graph(GraphArguments),
     /// List, show, clear and inject faults of a running application.
     Fault(FaultArguments),
     /// Measure how good Steadfast is at what it does.
@@ -54,6 +57,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Graph(arguments) => graph::run(&arguments),
         Command::Fault(arguments) => fault::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Host => container::host::host_main(),

@@ -7,6 +7,8 @@ mod table;
 mod watched;
 mod what_if;
 
+pub use page::escaped;
+
 use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
