@@ -13,3 +13,5 @@ mod graph;
 mod ladder;
 #[path = "behaviour/life.rs"]
 mod life;
+#[path = "behaviour/what_if.rs"]
+mod what_if;

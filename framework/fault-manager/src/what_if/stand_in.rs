@@ -6,6 +6,7 @@ mod looks;
 mod misfortune;
 mod models;
 mod orders;
+mod time;
 mod work;
 
 use std::collections::{BTreeMap, VecDeque};
@@ -23,9 +24,9 @@ use super::answer::{self, Answer};
 use super::{Assumptions, Supposition};
 use crate::manager::FaultManager;
 use crate::observation::Observation;
-use crate::plan::{ActionId, Effect};
+use crate::plan::ActionId;
 use crate::system::Scope;
-use crate::verdict::{FaultId, FaultState, Verdict};
+use crate::verdict::{FaultId, Verdict};
 
 /// When the fault begins, by the clock of the stand-in: every component has worked for a while, and
 /// every watch has begun.
@@ -199,87 +200,6 @@ impl<'a> StandIn<'a> {
             reaches: self.misfortune.readers(&self.components),
             components: self.components,
             verdicts: self.verdicts.into_values().collect(),
-        }
-    }
-
-    /// When time alone brings something, at the latest.
-    fn tick_due(&self) -> Duration {
-        let matures = self.matures.iter().map(|(due, _)| *due).min();
-        let later = self.later.iter().map(|(due, _)| *due).min();
-        let due = [self.manager.due(), matures, later].into_iter().flatten();
-        due.chain([self.looks.due]).min().unwrap_or_default()
-    }
-
-    /// What time brings: what can be observed now, looks of monitors, orders, deadlines.
-    fn tick(&mut self) {
-        let now = self.now;
-        let (due, rest) = std::mem::take(&mut self.matures)
-            .into_iter()
-            .partition(|(at, _)| *at <= now);
-        self.matures = rest;
-        let due: Vec<(Duration, Observation)> = due;
-        let of_now = |observation: &Observation| match observation {
-            Observation::Symptom(symptom) => {
-                let component = self.manager.detectors.all[symptom.detector.0].component;
-                self.components[component].incarnation == symptom.incarnation
-            }
-            _ => true,
-        };
-        let due = due.into_iter().map(|(_, observation)| observation);
-        let due: Vec<Observation> = due.filter(of_now).collect();
-        self.observations.extend(due);
-        self.look();
-        let (due, rest) = std::mem::take(&mut self.later)
-            .into_iter()
-            .partition(|(at, _)| *at <= now);
-        self.later = rest;
-        let due: Vec<(Duration, Order)> = due;
-        for (_, order) in due {
-            self.give(order);
-        }
-        if self.manager.due().is_some_and(|due| due <= now) {
-            self.observations.push_back(Observation::Tick);
-        }
-        self.attend();
-    }
-
-    /// Lets the fault manager see what was observed.
-    fn attend(&mut self) {
-        while let Some(observation) = self.observations.pop_front() {
-            for effect in self.manager.observe(self.now, observation) {
-                match effect {
-                    Effect::Act(planned) => {
-                        self.last_change = self.now;
-                        self.act(&planned);
-                    }
-                    Effect::Abandon(action) => {
-                        self.later.retain(|(_, order)| order.action != Some(action));
-                    }
-                    Effect::Record(verdict) => self.record(*verdict),
-                    // Nobody clears an emergency stop here.
-                    Effect::Rearm => {}
-                }
-            }
-        }
-    }
-
-    fn record(&mut self, verdict: Verdict) {
-        // A fault that is only recorded may be recorded for ever: that it begins is what counts.
-        let known = self.verdicts.get(&verdict.id);
-        let repeats = |other: &Verdict| {
-            let same = |one: &Verdict| {
-                one.kind == verdict.kind
-                    && one.component == verdict.component
-                    && one.cause == verdict.cause
-            };
-            same(other) && other.actions.is_empty() && verdict.actions.is_empty()
-        };
-        let again = known.is_none() && self.verdicts.values().any(repeats);
-        if !again && verdict.state != FaultState::Prefailed {
-            if known.is_none() {
-                self.last_change = self.now;
-            }
-            self.verdicts.insert(verdict.id, verdict);
         }
     }
 

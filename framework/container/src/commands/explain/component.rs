@@ -1,6 +1,7 @@
 //! What the rules make of a component: what is watched, what is done step by step, whom it concerns.
 
 use std::fmt::Write as _;
+use std::time::Duration;
 
 use fault_manager::what_if::{
     Answer, Assumptions, Recoveries, SupposedFault, Supposition, answer, dependents,
@@ -28,6 +29,8 @@ pub struct Explanation {
     pub watched: Vec<Watched>,
     /// The ladder: what is done when a fault is to be recovered, step by step.
     pub ladder: Vec<String>,
+    /// How long a step of it may take, in seconds; none if the rules do not say.
+    pub recovery_deadline_s: Option<f64>,
     /// What it needs.
     pub needs: Vec<String>,
     /// Who needs it, and what becomes of them.
@@ -55,6 +58,8 @@ pub fn explain(
         runs: runs(scope, component),
         watched: own.flat_map(|detector| subject.watched(detector)).collect(),
         ladder: ladder(scope, rules),
+        recovery_deadline_s: (rules.recovery.as_ref())
+            .map(|rule| rule.value.deadline.as_secs_f64()),
         needs: needs(scope, component),
         needed_by: needed_by(scopes, application, component),
         loss: loss(scopes, application, component),
@@ -118,8 +123,11 @@ fn ladder(scope: &Scope, rules: &ComponentRules) -> Vec<String> {
             Some(Preload::Cold) | None => "",
         };
         steps.push(format!(
-            "It is reset, at most {} times within {}{pause}{}{standby}.",
-            fault.retry_max,
+            "It is reset, at most {} within {}{pause}{}{standby}.",
+            match fault.retry_max {
+                1 => "once".to_owned(),
+                times => format!("{times} times"),
+            },
             time(fault.window),
             memory.unwrap_or_default()
         ));
@@ -144,12 +152,6 @@ fn ladder(scope: &Scope, rules: &ComponentRules) -> Vec<String> {
         }
         ApplicationSeverity::Global => "Emergency stop of all applications.".to_owned(),
     });
-    if let Some(rule) = &rules.recovery {
-        let deadline = time(rule.value.deadline);
-        steps.push(format!(
-            "A step that takes longer than {deadline} has failed: the next one."
-        ));
-    }
     steps
 }
 
@@ -222,6 +224,13 @@ pub fn text(explanation: &Explanation) -> String {
     text += "  The ladder\n";
     for (index, step) in explanation.ladder.iter().enumerate() {
         let _infallible = writeln!(text, "    {}. {step}", index + 1);
+    }
+    if let Some(deadline_s) = explanation.recovery_deadline_s {
+        let deadline = time(Duration::from_secs_f64(deadline_s));
+        let _infallible = writeln!(
+            text,
+            "    A recovery that fails, or takes longer than {deadline}, is followed by the next step."
+        );
     }
     for (heading, sentences, none) in [
         (

@@ -14,13 +14,14 @@ use super::what_if::{name, outcome};
 const STYLE: &str = "\
 body { font: 15px/1.45 system-ui, sans-serif; margin: 2em; color: #1c2430; background: #fff }\n\
 table { border-collapse: collapse }\n\
-th, td { border: 1px solid #c9d1dc; padding: 3px 6px; text-align: left; vertical-align: top; \
+th, td { border: 1px solid #c9d1dc; padding: 2px; text-align: left; vertical-align: top; \
 font-size: 12px }\n\
 thead th { background: #eef1f5; position: sticky; top: 0; writing-mode: vertical-rl; \
 transform: rotate(180deg); white-space: nowrap }\n\
 thead th:first-child { writing-mode: horizontal-tb; transform: none; vertical-align: bottom }\n\
 tbody th { background: #eef1f5; position: sticky; left: 0; white-space: nowrap }\n\
 summary { cursor: pointer }\n\
+td div { padding: 2px 4px }\n\
 ul { margin: 2px 0 2px 16px; padding: 0 }\n\
 .stop { background: #f7c9c2 } .lost { background: #fbe2b8 } .replaced { background: #dfe4fb }\n\
 .reset { background: #d6eaf8 } .record { background: #efe7f5 } .nothing { background: #f4f4f4; \
@@ -62,13 +63,9 @@ fn line(scopes: &[Scope], row: &Row) -> String {
     let mut line = format!("<tr><th>{who}</th>");
     for fault in SupposedFault::ALL {
         let cells = row.cells.iter();
-        let cells: Vec<&Cell> = cells
-            .filter(|cell| cell.supposition.fault == fault)
-            .collect();
-        let _infallible = write!(line, "<td class=\"{}\">", worst(&cells));
-        for cell in cells {
-            line += &content(cell);
-        }
+        let cells = cells.filter(|cell| cell.supposition.fault == fault);
+        line += "<td>";
+        line.extend(cells.map(content));
         line += "</td>";
     }
     let _infallible = match &row.loss {
@@ -89,7 +86,11 @@ fn content(cell: &Cell) -> String {
         .map(|port| format!("<span class=\"port\">{}: </span>", escaped(port)))
         .collect();
     match &cell.answer {
-        Ok(answer) => format!("<div>{port}{}</div>", opened(answer)),
+        Ok(answer) => format!(
+            "<div class=\"{}\">{port}{}</div>",
+            class(answer),
+            opened(answer)
+        ),
         Err(reason) => format!("<div title=\"{}\">-</div>", escaped(&reason.to_string())),
     }
 }
@@ -109,15 +110,7 @@ fn opened(answer: &Answer) -> String {
     }
 }
 
-/// The class of the worst answer of several.
-fn worst(cells: &[&Cell]) -> &'static str {
-    const ORDER: [&str; 6] = ["stop", "lost", "replaced", "reset", "record", "nothing"];
-    let answers = cells.iter().filter_map(|cell| cell.answer.as_ref().ok());
-    let classes: Vec<&str> = answers.map(class).collect();
-    let found = ORDER.into_iter().find(|one| classes.contains(one));
-    found.unwrap_or("none")
-}
-
+/// The look of an answer.
 fn class(answer: &Answer) -> &'static str {
     match outcome(answer) {
         "emergency stop" | "application stopped" => "stop",

@@ -72,9 +72,9 @@ fn link(edge: &Edge, drawn: &[Drawn]) -> Link {
     let (source, target) = (&edge.source, &edge.target);
     Link {
         source: source.node,
-        source_y: drawn[source.node].port_y(source.port.as_deref()),
+        source_y: drawn[source.node].output_y(source.port.as_deref()),
         target: target.node,
-        target_y: drawn[target.node].port_y(target.port.as_deref()),
+        target_y: drawn[target.node].input_y(target.port.as_deref()),
     }
 }
 

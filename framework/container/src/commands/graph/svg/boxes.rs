@@ -37,6 +37,8 @@ struct Text {
     /// Left end and base line, from the box's corner.
     x: f64,
     y: f64,
+    /// Where it ends, for one that stands at the right side.
+    ends: Option<f64>,
 }
 
 impl Drawn {
@@ -57,6 +59,7 @@ impl Drawn {
             size: NAME,
             x: PADDING,
             y: PADDING + NAME,
+            ends: None,
         }];
         let notes_y = PADDING + NAME + 5.0;
         let row = |from: f64, index: usize| from + ROW * (index as f64 + 0.75);
@@ -66,23 +69,28 @@ impl Drawn {
             size: NOTE,
             x: PADDING,
             y: row(notes_y, index),
+            ends: None,
         }));
         let ports_y = notes_y + ROW * node.notes.len() as f64 + 4.0;
-        let port = |words: &String, index: usize, x: f64| Text {
+        let port = |words: &String, index: usize, x: f64, ends: Option<f64>| Text {
             words: words.clone(),
             class: "port",
             size: NOTE,
             x,
             y: row(ports_y, index),
+            ends,
         };
         let inputs = node.inputs.iter().enumerate();
-        texts.extend(inputs.map(|(index, words)| port(words, index, PADDING)));
+        texts.extend(inputs.map(|(index, words)| port(words, index, PADDING, None)));
         let outputs = node.outputs.iter().enumerate();
-        texts.extend(
-            outputs.map(|(index, words)| {
-                port(words, index, width - PADDING - text_width(words, NOTE))
-            }),
-        );
+        texts.extend(outputs.map(|(index, words)| {
+            port(
+                words,
+                index,
+                width - PADDING - text_width(words, NOTE),
+                Some(width - PADDING),
+            )
+        }));
         let rows = node.inputs.len().max(node.outputs.len());
         Self {
             extent: Extent {
@@ -96,10 +104,20 @@ impl Drawn {
         }
     }
 
-    /// How far below its top a line goes in or out: at the port, or beside the name.
-    pub fn port_y(&self, port: Option<&str>) -> f64 {
-        let find = |names: &[String]| names.iter().position(|name| Some(name.as_str()) == port);
-        match find(&self.inputs).or_else(|| find(&self.outputs)) {
+    /// How far below its top a line goes in: at the input, or beside the name.
+    pub fn input_y(&self, port: Option<&str>) -> f64 {
+        self.port_y(&self.inputs, port)
+    }
+
+    /// How far below its top a line goes out: at the output, or beside the name, as for who looks on
+    /// at an input.
+    pub fn output_y(&self, port: Option<&str>) -> f64 {
+        self.port_y(&self.outputs, port)
+    }
+
+    fn port_y(&self, names: &[String], port: Option<&str>) -> f64 {
+        let index = names.iter().position(|name| Some(name.as_str()) == port);
+        match index {
             Some(index) => self.ports_y + ROW * (index as f64 + 0.5),
             None => PADDING + NAME / 2.0,
         }
@@ -113,11 +131,15 @@ impl Drawn {
             area.x, area.y, area.width, area.height
         );
         for text in &self.texts {
-            let (x, y) = (area.x + text.x, area.y + text.y);
+            let (x, anchor) = match text.ends {
+                Some(ends) => (ends, " text-anchor=\"end\""),
+                None => (text.x, ""),
+            };
+            let (x, y) = (area.x + x, area.y + text.y);
             // Writing to memory does not fail.
             let _infallible = writeln!(
                 svg,
-                "<text class=\"{}\" x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{}\">{}</text>",
+                "<text class=\"{}\" x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{}\"{anchor}>{}</text>",
                 text.class,
                 text.size,
                 escaped(&text.words)
