@@ -33,3 +33,4 @@ mod supervised;
 mod tidy;
 mod two_cameras;
 mod what_if;
+mod workbench;
