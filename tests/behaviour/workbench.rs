@@ -96,6 +96,44 @@ fn a_question_is_answered_by_the_fault_manager_itself() {
     );
 }
 
+/// The same faults as in the scenarios that are shipped, which are run elsewhere.
+#[test]
+fn answers_are_those_of_the_scenarios() {
+    for (application, scenario, question, actions) in [
+        (
+            "redundant_sonars",
+            "lying_sonar",
+            "front_sonar_2.range offset",
+            &["reset front_sonar_2: done", "stop front_sonar_2: done"][..],
+        ),
+        (
+            "target_following",
+            "unplugged_sonar",
+            "left_sonar.range out_of_range",
+            &[
+                "reset left_sonar: done",
+                "reset left_sonar: done",
+                "stop left_sonar: done",
+            ],
+        ),
+    ] {
+        let profile = repository().join(format!("profiles/applications/{application}.xml"));
+        let rules = repository().join(format!("rules/scenarios/{scenario}/rules.xml"));
+        let (profile, rules) = (profile.display().to_string(), rules.display().to_string());
+        let arguments = [
+            "explain",
+            &profile,
+            "--rules",
+            &rules,
+            "--what-if",
+            question,
+        ];
+        let finished = steadfast(&[&arguments[..], &["--format", "json"]].concat());
+        let answer: Value = serde_json::from_str(&finished.stdout).expect("JSON");
+        assert_eq!(answer["actions"], serde_json::json!(actions), "{scenario}");
+    }
+}
+
 #[test]
 fn a_question_that_is_none_is_refused_with_what_there_is() {
     let profile = repository().join("profiles/applications/target_following.xml");

@@ -1,7 +1,7 @@
 //! What would be done if a component had this fault: the answer of the fault manager itself, without
 //! a robot.
 //!
-//! A [`StandIn`](stand_in::StandIn) takes the container's place: components that do nothing but
+//! A stand-in takes the container's place: components that do nothing but
 //! complete their cycles and send data, on one thread in simulated time. What goes wrong is told to a
 //! real [`FaultManager`](crate::FaultManager), and what that wants done is done, so an answer is
 //! right as far as the stand-in behaves as the container does; a long test of the project compares

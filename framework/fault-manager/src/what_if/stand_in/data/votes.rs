@@ -13,7 +13,8 @@ const DECISIVE: usize = 3;
 /// A voter.
 #[derive(Debug)]
 pub(super) struct Vote {
-    output: Port,
+    /// The input that gets what is voted.
+    pub output: Port,
     sources: Vec<Source>,
 }
 

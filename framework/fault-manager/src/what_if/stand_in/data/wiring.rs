@@ -89,6 +89,10 @@ impl Wiring {
             wiring.connect(scope, *first);
             for (voting, rule) in scope.rules.votings.iter().enumerate() {
                 let vote = Vote::new(voting, rule, *first, manager);
+                // It stands in for what is connected.
+                for output in wiring.outputs.values_mut() {
+                    output.targets.retain(|target| *target != vote.output);
+                }
                 wiring.votes.push(vote);
             }
         }
