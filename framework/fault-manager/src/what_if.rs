@@ -1,11 +1,11 @@
 //! What would be done if a component had this fault: the answer of the fault manager itself, without
 //! a robot.
 //!
-//! A stand-in takes the container's place: components that do nothing but
-//! complete their cycles and send data, on one thread in simulated time. What goes wrong is told to a
-//! real [`FaultManager`](crate::FaultManager), and what that wants done is done, so an answer is
-//! right as far as the stand-in behaves as the container does; a long test of the project compares
-//! the two for every fault of every component of the reference robot.
+//! A stand-in takes the container's place: components that do nothing but complete their cycles and
+//! send data, on one thread in simulated time. What goes wrong is told to a real
+//! [`FaultManager`](crate::FaultManager), and what that wants done is done, so an answer is right as
+//! far as the stand-in behaves as the container does; a long test of the project compares the two for
+//! every fault of every component of the reference robot.
 //!
 //! A stand-in knows only what profiles and rules say. What a component makes of data that are wrong,
 //! or do not come, it cannot know: it is taken to cope with them, and [`Answer::reaches`] says who got

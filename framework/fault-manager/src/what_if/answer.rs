@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::stand_in::{Component, State};
 use crate::state::Condition;
-use crate::verdict::{Cause, Verdict};
+use crate::verdict::Verdict;
 
 /// What would come of a fault.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -69,12 +69,6 @@ impl Answer {
     pub fn stops_robot(&self) -> bool {
         let stopped = |end: &ApplicationEnd| end.state == "STOPPED";
         self.emergency_stop || self.applications.iter().any(stopped)
-    }
-
-    /// The faults that are no consequence of others.
-    pub fn root_causes(&self) -> impl Iterator<Item = &Verdict> {
-        let all = self.verdicts.iter();
-        all.filter(|verdict| verdict.cause == Cause::Root)
     }
 }
 
