@@ -38,3 +38,5 @@ mod stopping;
 mod supervised;
 mod tidy;
 mod two_cameras;
+mod what_if;
+mod workbench;

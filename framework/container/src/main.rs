@@ -12,7 +12,9 @@ use commands::bench::{self, BenchArguments};
 use commands::check::{self, CheckArguments};
 use commands::completions::{self, CompletionsArguments};
 use commands::component::{self, ComponentArguments};
+use commands::explain::{self, ExplainArguments};
 use commands::fault::{self, FaultArguments};
+use commands::graph::{self, GraphArguments};
 use commands::man::{self, ManArguments};
 use commands::new::{self, NewArguments};
 use commands::replay::{self, ReplayArguments};
@@ -58,6 +60,10 @@ enum Command {
     Top(TopArguments),
     /// List, show, reset, replace and stop components of a running application.
     Component(ComponentArguments),
+    /// Explain what the rules do, and what would come of a fault, without a robot.
+    Explain(ExplainArguments),
+    /// Draw who runs where and what goes from whom to whom.
+    Graph(GraphArguments),
     /// List, show, clear and inject faults of a running application.
     ///
     /// Talks to `steadfast run` over a socket that only its user may open.
@@ -112,6 +118,8 @@ fn main() -> ExitCode {
         Command::Status(arguments) => status::run(&arguments),
         Command::Top(arguments) => top::run(&arguments),
         Command::Component(arguments) => component::run(&arguments),
+        Command::Explain(arguments) => explain::run(&arguments),
+        Command::Graph(arguments) => graph::run(&arguments),
         Command::Fault(arguments) => fault::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),

@@ -3,7 +3,7 @@
 use system_model::profile::Located;
 use system_model::rules::{
     Arming, ComponentRules, ComponentSeverity, Confirmation, ExceptionClass, ExceptionRule,
-    FaultRules, HeartbeatRule, Judgement, MonitorRule, PortRules,
+    ExecutorRules, FaultRules, HeartbeatRule, Judgement, MonitorRule, OverrunRule, PortRules,
 };
 use system_model::specification::{ApplicationSpecification, Place, PortDirection};
 
@@ -115,19 +115,11 @@ impl Detectors {
     /// executor, its application, its node. Memory is each component's own.
     fn add_conduct(&mut self, index: usize, first: usize, rules: &FaultRules, system: &System) {
         let component = &system.components[index];
-        let executor = rules.executors.iter().find(|rule| {
-            let leader = system.components.get(first + rule.first_component);
-            leader.is_some_and(|leader| leader.executor == component.executor)
-        });
-        let inherited = executor.and_then(|rule| rule.overrun.as_ref());
-        if let Some(rule) = component.rules.overrun.as_ref().or(inherited) {
+        if let Some(rule) = overrun_rule(index, first, rules, system) {
             let judged = Some((rule.value.judgement, &rule.place));
             self.add(index, DetectorKind::Overrun, judged);
         }
-        let inherited = executor
-            .and_then(|rule| rule.heartbeat.as_ref())
-            .or_else(|| inherited_heartbeat(rules, component));
-        if let Some(rule) = component.rules.heartbeat.as_ref().or(inherited) {
+        if let Some(rule) = heartbeat_rule(index, first, rules, system) {
             let judged = Some((rule.value.judgement, &rule.place));
             self.add(index, DetectorKind::Heartbeat, judged);
         }
@@ -194,6 +186,46 @@ fn monitored(specification: &ApplicationSpecification, rule: &MonitorRule) -> Op
     });
     let blamed = taker.or(rule.outputs.first())?;
     Some(blamed.component)
+}
+
+/// The rule about overruns of a component: its own before that of its executor. `first` is the first
+/// component of its application, whose `rules` these are.
+pub(crate) fn overrun_rule<'a>(
+    index: usize,
+    first: usize,
+    rules: &'a FaultRules,
+    system: &'a System,
+) -> Option<&'a Located<OverrunRule>> {
+    let own = system.components[index].rules.overrun.as_ref();
+    let executor = executor_rules(index, first, rules, system);
+    own.or_else(|| executor.and_then(|rule| rule.overrun.as_ref()))
+}
+
+/// The rule about the heartbeat of a component: its own before that of its executor, of its
+/// application, of its node.
+pub(crate) fn heartbeat_rule<'a>(
+    index: usize,
+    first: usize,
+    rules: &'a FaultRules,
+    system: &'a System,
+) -> Option<&'a Located<HeartbeatRule>> {
+    let component = &system.components[index];
+    let executor = executor_rules(index, first, rules, system);
+    let own = component.rules.heartbeat.as_ref();
+    own.or_else(|| executor.and_then(|rule| rule.heartbeat.as_ref()))
+        .or_else(|| inherited_heartbeat(rules, component))
+}
+
+fn executor_rules<'a>(
+    index: usize,
+    first: usize,
+    rules: &'a FaultRules,
+    system: &System,
+) -> Option<&'a ExecutorRules> {
+    rules.executors.iter().find(|rule| {
+        let leader = system.components.get(first + rule.first_component);
+        leader.is_some_and(|leader| leader.executor == system.components[index].executor)
+    })
 }
 
 /// The heartbeat of the application or of the node, for a component that works in periods.

@@ -46,6 +46,7 @@ mod stopping;
 mod symptoms;
 mod system;
 mod verdict;
+pub mod what_if;
 mod wording;
 
 pub use evidence::{Evidence, Number};

@@ -15,3 +15,5 @@ mod ladder;
 mod life;
 #[path = "behaviour/operator.rs"]
 mod operator;
+#[path = "behaviour/what_if.rs"]
+mod what_if;

@@ -140,6 +140,31 @@ Exit codes:
   2  --once, --picture: no application is running, several are, or it does not answer; there is no
      terminal, or the picture cannot be written";
 
+/// Of `explain`.
+pub const EXPLAIN: &str = "\
+Examples:
+  steadfast explain application.xml --rules rules.xml
+  steadfast explain application.xml --rules rules.xml --component camera
+  steadfast explain application.xml --rules rules.xml --what-if 'camera segfault'
+  steadfast explain application.xml --rules rules.xml --what-if all --format html --output table.html
+
+Exit codes:
+  0  explained
+  1  a profile or rule file has problems, or the question cannot be understood
+  2  a file cannot be read or written";
+
+/// Of `graph`.
+pub const GRAPH: &str = "\
+Examples:
+  steadfast graph application.xml --rules rules.xml --output robot.svg
+  steadfast graph application.xml --format dot
+  steadfast graph navigation.xml mapping.xml --format mermaid
+
+Exit codes:
+  0  drawn
+  1  a profile or rule file has problems
+  2  a file cannot be read or written";
+
 /// Of `bench`.
 pub const BENCH: &str = "\
 Examples:

@@ -28,8 +28,7 @@ use system_profile::{Problem, load_world};
 
 use super::problems;
 use applications::Sources;
-use failure::unwritable;
-pub(super) use failure::{Failed, exit_code, refused};
+pub(super) use failure::{Failed, exit_code, refused, unwritable};
 pub(super) use libraries::{libraries, library_folders};
 use live::Watcher;
 use observers::{ObserverArguments, listen};
@@ -215,7 +214,7 @@ fn conclude(arguments: &RunArguments, summary: &Summary) -> Result<(), Failed> {
 }
 
 /// Warnings do not stop a run, but a person should see them.
-fn show(found: &[Problem]) {
+pub(super) fn show(found: &[Problem]) {
     if !found.is_empty() {
         let _unread = writeln!(
             io::stderr(),

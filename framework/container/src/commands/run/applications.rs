@@ -36,7 +36,9 @@ pub(in crate::commands) fn load(sources: &Sources<'_>) -> Result<Vec<Application
 }
 
 /// Reads them, without their models; with warnings.
-pub(super) fn read(sources: &Sources<'_>) -> Result<(Vec<Application>, Vec<Problem>), Failed> {
+pub(in crate::commands) fn read(
+    sources: &Sources<'_>,
+) -> Result<(Vec<Application>, Vec<Problem>), Failed> {
     let files = (sources.applications.iter())
         .chain(sources.rules)
         .chain(sources.inject);

@@ -41,7 +41,7 @@ pub(in crate::commands) fn refused(error: &StartError) -> Failed {
 }
 
 /// A file that was asked for and cannot be written.
-pub(super) fn unwritable(path: Option<&Path>, error: &io::Error) -> Failed {
+pub(in crate::commands) fn unwritable(path: Option<&Path>, error: &io::Error) -> Failed {
     let name = path.map_or_else(
         || "the output".to_owned(),
         |path| path.display().to_string(),
