@@ -7,9 +7,9 @@ use super::results::{FloorRow, RecoveryRow, Results};
 use crate::commands::bench::drawing::line;
 use crate::commands::bench::percentiles::Percentiles;
 
-const LABELS_WIDTH: f64 = 240.0;
+const LABELS_WIDTH: f64 = 280.0;
 const PANEL_WIDTH: f64 = 270.0;
-const GAP: f64 = 18.0;
+const GAP: f64 = 44.0;
 const ROW_HEIGHT: f64 = 16.0;
 /// Title, loads, and names of the floor.
 const TOP: f64 = 130.0;
