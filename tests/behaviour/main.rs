@@ -24,6 +24,7 @@ mod new;
 mod persistence;
 mod ports;
 mod readme;
+mod recordings;
 mod recovery;
 mod reference_model;
 mod reference_robot;

@@ -11,13 +11,14 @@ use tests::{Watched, repository};
 
 /// Which crates of the workspace each crate of the framework may build on; development
 /// dependencies do not count. A new crate gets its place here.
-const FRAMEWORK: [(&str, &[&str]); 9] = [
+const FRAMEWORK: [(&str, &[&str]); 10] = [
     ("component-abi", &[]),
     ("component-sdk-derive", &[]),
     ("component-sdk", &["component-abi", "component-sdk-derive"]),
     ("system-model", &[]),
     ("system-profile", &["system-model"]),
     ("fault-manager", &["system-model"]),
+    ("recording", &["system-model"]),
     ("robot-interface", &["component-sdk"]),
     ("robot-simulation", &["robot-interface", "system-model"]),
     (
@@ -25,6 +26,7 @@ const FRAMEWORK: [(&str, &[&str]); 9] = [
         &[
             "component-abi",
             "fault-manager",
+            "recording",
             "robot-simulation",
             "system-model",
             "system-profile",

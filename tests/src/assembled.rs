@@ -30,6 +30,7 @@ pub fn environment() -> (Arc<Environment>, EventWriter) {
         scenes: Scenes::default(),
         injections: Injections::default(),
         world: None,
+        score: None,
         busy: BusyTime::default(),
     };
     (Arc::new(environment), writer)

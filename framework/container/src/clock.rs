@@ -38,7 +38,8 @@ impl Clock {
     pub fn now_ns(&self) -> u64 {
         match self {
             Self::Real(start) => u64::try_from(start.elapsed().as_nanos()).unwrap_or(u64::MAX),
-            Self::Simulated(now) => now.load(Ordering::Relaxed),
+            // Whoever sees a time also sees what was done before time came so far.
+            Self::Simulated(now) => now.load(Ordering::Acquire),
         }
     }
 
@@ -50,6 +51,15 @@ impl Clock {
         }
     }
 
+    /// What a cycle that began at `cycle_ns` takes for now: reading the machine's clock for every
+    /// datum would cost more than the datum does.
+    pub fn cycle_time_ns(&self, cycle_ns: u64) -> u64 {
+        match self {
+            Self::Real(_) => cycle_ns,
+            Self::Simulated(_) => self.now_ns(),
+        }
+    }
+
     /// Time since the application started.
     pub fn now(&self) -> Duration {
         Duration::from_nanos(self.now_ns())
@@ -58,7 +68,7 @@ impl Clock {
     /// Sets simulated time; does nothing to a real clock. Time never goes back.
     pub fn advance_to(&self, now_ns: u64) {
         if let Self::Simulated(now) = self {
-            now.fetch_max(now_ns, Ordering::Relaxed);
+            now.fetch_max(now_ns, Ordering::Release);
         }
     }
 }

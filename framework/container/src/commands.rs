@@ -10,6 +10,7 @@ pub mod manual;
 pub mod new;
 mod output;
 pub mod problems;
+pub mod replay;
 pub mod run;
 pub mod schema;
 pub mod world;

@@ -171,11 +171,12 @@ impl Event {
     }
 }
 
+/// One line of the file.
 #[derive(Debug, Serialize)]
-struct Line {
-    t_ns: u64,
+pub(crate) struct Line {
+    pub(crate) t_ns: u64,
     #[serde(flatten)]
-    event: Event,
+    pub(crate) event: Event,
 }
 
 /// Where events go. Cheap to call from any thread; never waits unless time is simulated.
@@ -184,6 +185,8 @@ pub struct EventLog {
     sender: Sender<Option<Line>>,
     waits: bool,
     lost: AtomicU64,
+    /// Who gets every event, too.
+    recording: Option<Sender<(u64, Event)>>,
 }
 
 /// The thread that writes; to be closed when all has been said.
@@ -238,6 +241,7 @@ impl EventLog {
             sender,
             waits,
             lost: AtomicU64::new(0),
+            recording: None,
         };
         Ok((log, EventWriter { thread }))
     }
@@ -248,16 +252,29 @@ impl EventLog {
             sender: bounded(0).0,
             waits: false,
             lost: AtomicU64::new(0),
+            recording: None,
         }
+    }
+
+    /// A recording gets every event, too; what it does not keep up with counts as lost.
+    #[must_use]
+    pub fn recorded_by(self, recording: Option<Sender<(u64, Event)>>) -> Self {
+        Self { recording, ..self }
     }
 
     /// Records an event at a time of the application's clock.
     pub fn record(&self, t_ns: u64, event: Event) {
-        let line = Some(Line { t_ns, event });
+        if let Some(recording) = &self.recording {
+            self.pass_on(recording, (t_ns, event.clone()));
+        }
+        self.pass_on(&self.sender, Some(Line { t_ns, event }));
+    }
+
+    fn pass_on<Message>(&self, receiver: &Sender<Message>, message: Message) {
         if self.waits {
-            // Fails only when the writer has ended, after which nobody reads.
-            let _ended = self.sender.send(line);
-        } else if let Err(TrySendError::Full(_)) = self.sender.try_send(line) {
+            // Fails only when the receiver has ended, after which nobody reads.
+            let _ended = receiver.send(message);
+        } else if let Err(TrySendError::Full(_)) = receiver.try_send(message) {
             self.lost.fetch_add(1, Ordering::Relaxed);
         }
     }

@@ -22,6 +22,8 @@ pub mod library;
 pub mod outer_supervision;
 pub mod persistence;
 pub mod port;
+pub mod recording;
+pub mod replay;
 pub mod schedule;
 mod scheduling;
 pub mod status;

@@ -14,6 +14,7 @@ use commands::completions::{self, CompletionsArguments};
 use commands::fault::{self, FaultArguments};
 use commands::man::{self, ManArguments};
 use commands::new::{self, NewArguments};
+use commands::replay::{self, ReplayArguments};
 use commands::run::{self, RunArguments};
 use commands::schema::{self, SchemaArguments};
 use commands::world::{self, WorldArguments};
@@ -46,6 +47,8 @@ enum Command {
     /// everything in order; a second Ctrl-C ends the process at once. Without rules a component that
     /// fails is reset, at most three times in a minute.
     Run(Box<RunArguments>),
+    /// Play a recording again: to a component, or to the rules alone.
+    Replay(ReplayArguments),
     /// List, show, clear and inject faults of a running application.
     ///
     /// Talks to `steadfast run` over a socket that only its user may open.
@@ -96,6 +99,7 @@ fn main() -> ExitCode {
     match arguments.command {
         Command::Check(arguments) => check::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Replay(arguments) => replay::run(&arguments),
         Command::Fault(arguments) => fault::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),

@@ -7,6 +7,7 @@ use robot_simulation::RobotSummary;
 use serde::Serialize;
 use system_model::life_cycle::LifeCycleState;
 
+use crate::recording::RecordingSummary;
 use crate::status::ComponentStatus;
 
 /// What a run came to.
@@ -21,6 +22,9 @@ pub struct Summary {
     /// The robot of the simulated world, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub robot: Option<RobotSummary>,
+    /// What was recorded, if anything was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recording: Option<RecordingSummary>,
 }
 
 /// One application.

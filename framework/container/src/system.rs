@@ -3,8 +3,10 @@
 mod agenda;
 mod applications;
 mod options;
+mod outcome;
 mod persistence;
 mod real_time;
+mod recording;
 mod stages;
 mod start_error;
 mod supervise;
@@ -23,8 +25,9 @@ use crate::control::RunningSystem;
 use crate::event_log::{Event, EventWriter};
 use crate::lane::{Crew, Lane, remaining};
 use crate::library::PortDescription;
+use crate::recording::RecordingThread;
 use crate::status::ComponentStatus;
-use crate::summary::{ApplicationSummary, ComponentSummary, Summary, application_state};
+use crate::summary::Summary;
 use crate::supervision::{ManagerThreads, Supervisor};
 use crate::world::World;
 
@@ -66,6 +69,7 @@ pub struct System {
     manager_threads: ManagerThreads,
     persistence: Persistence,
     writer: EventWriter,
+    recording: Option<RecordingThread>,
 }
 
 impl System {
@@ -84,11 +88,9 @@ impl System {
         let supervised = options.supervised.clone();
         let outside = supervised.as_ref().and_then(|it| it.world().cloned());
         let world = outside.or_else(|| simulation.map(|it| Arc::new(World::new(it, real))));
-        let (events, writer) = options.open_events()?;
-        let run_time = supervised.as_ref().map(|it| it.run_time());
-        let environment =
-            (options.clock).environment(events, world.clone(), run_time.unwrap_or_default());
-        let environment = Arc::new(environment);
+        let (recorder, recorded) = options.recorder();
+        let (events, writer) = options.open_events(recorded)?;
+        let environment = options.environment(events, world.clone());
         let applications = Applications::new(applications);
         let specification = &applications.specification;
         let assembly = assemble_together(
@@ -105,6 +107,10 @@ impl System {
         inject(&injections, &assembly, &environment).map_err(StartError::Assembly)?;
         let (supervisor, wanted) =
             supervise(&applications, &assembly, &environment).map_err(StartError::Assembly)?;
+        recording::play(&applications, &assembly, &environment)?;
+        let recording = recorder
+            .map(|it| recording::record(it, &applications, &assembly, &environment, &options));
+        let recording = recording.transpose()?;
         let persistence = Persistence::new(&applications, &assembly.factories);
         let Assembly {
             components,
@@ -130,6 +136,7 @@ impl System {
             manager_threads: ManagerThreads::default(),
             persistence,
             writer,
+            recording,
         };
         if let Err(error) = system.bring_up() {
             // The refusal counts; a log that cannot be written either does not change it.
@@ -206,7 +213,7 @@ impl System {
 
     /// Stops everything in order and says what the run came to.
     pub fn stop(mut self, reason: &'static str) -> (Summary, Option<std::io::Error>) {
-        let summary = self.summary(reason);
+        let mut summary = self.summary(reason);
         let deadline = Instant::now() + STOP_LIMIT;
         self.manager_threads.stop(&self.supervisor);
         for (lane, _) in &self.lanes {
@@ -223,6 +230,7 @@ impl System {
         self.shut_down(remaining(deadline).max(STOP_LIMIT / 3));
         self.persistence.end(&self.environment);
         self.record_end(reason);
+        summary.recording = self.recording.take().map(RecordingThread::finish);
         (summary, self.close().err())
     }
 
@@ -239,6 +247,10 @@ impl System {
     }
 
     fn close(self) -> std::io::Result<()> {
+        if let Some(recording) = self.recording {
+            // Of a run that did not start: what there is of it tells why.
+            let _not_summed_up = recording.finish();
+        }
         self.crew.dismiss();
         self.environment.events.finish();
         self.writer.close()
@@ -253,53 +265,5 @@ impl System {
     fn record(&self, event: Event) {
         let now_ns = self.environment.clock.now_ns();
         self.environment.events.record(now_ns, event);
-    }
-
-    fn is_over(&self) -> bool {
-        let reached = self
-            .world
-            .as_ref()
-            .is_some_and(|world| world.has_reached_target());
-        let elapsed = self
-            .options
-            .duration
-            .is_some_and(|duration| self.now() >= duration);
-        reached || elapsed
-    }
-
-    fn reason(&self) -> &'static str {
-        let reached = self
-            .world
-            .as_ref()
-            .is_some_and(|world| world.has_reached_target());
-        if reached {
-            "target_reached"
-        } else {
-            "duration_elapsed"
-        }
-    }
-
-    fn summary(&self, ended_by: &'static str) -> Summary {
-        let application = |members: &Range<usize>| ApplicationSummary {
-            state: application_state(&self.statuses[members.clone()]),
-            ended_by,
-            time_s: self.now().as_secs_f64(),
-            clock: self.options.clock.name(),
-            seed: self.options.seed,
-            events_lost: self.environment.events.lost(),
-        };
-        let applications = self.applications.iter();
-        Summary {
-            applications: applications
-                .map(|(name, members)| (name.clone(), application(members)))
-                .collect(),
-            components: self
-                .statuses
-                .iter()
-                .map(|status| (status.name.clone(), ComponentSummary::of(status)))
-                .collect(),
-            restarts: (self.options.supervised.as_ref()).map_or(0, |it| it.restarts()),
-            robot: self.world.as_ref().map(|world| world.summary()),
-        }
     }
 }

@@ -180,6 +180,7 @@ fn time_cycles(length: usize, count: u64, monitored: bool) -> Duration {
         scenes: Scenes::default(),
         injections: Injections::default(),
         world: None,
+        score: None,
         busy: BusyTime::default(),
     });
     let mut executor = Executor::new(

@@ -17,6 +17,7 @@ use crate::component::{
 use crate::guard::Guarded;
 use crate::host::{Hosted, HostedComponent, Hosts};
 use crate::library::{ComponentDescription, LoadedLibrary, PortDescription};
+use crate::replay::Player;
 use crate::status::ComponentStatus;
 
 /// Makes the instances of one component.
@@ -80,7 +81,7 @@ impl Factory {
                 chosen.path.display()
             ));
         }
-        if self.isolation() == IsolationTier::Process {
+        if self.isolation() == IsolationTier::Process || self.player(variant).is_some() {
             return self.instantiate(variant, None, status);
         }
         let library = LoadedLibrary::load(&chosen.path).map_err(|error| error.to_string())?;
@@ -106,14 +107,15 @@ impl Factory {
     ) -> Result<Component, String> {
         let specification = &self.variants[variant].specification;
         let description = &self.variants[variant].description;
-        let instance = match library {
-            Some(library) => {
+        let instance = match (self.player(variant), library) {
+            (Some(player), _) => Instance::from(player),
+            (None, Some(library)) => {
                 let callbacks = library.description.callbacks;
                 Guarded::new(callbacks, library.code, self.number)
                     .map(Instance::from)
                     .map_err(|error| format!("no stack for it: {error}"))?
             }
-            None => Instance::from(self.host(variant, status.is_standby())?),
+            (None, None) => Instance::from(self.host(variant, status.is_standby())?),
         };
         let services = Services::new(
             Arc::from(specification.name.as_str()),
@@ -136,6 +138,14 @@ impl Factory {
             component.count_allocations();
         }
         Ok(component)
+    }
+
+    /// What plays the component, if a recording is played.
+    fn player(&self, variant: usize) -> Option<Player> {
+        let score = self.environment.score.as_ref()?;
+        let played = score.plays(&self.variants[0].specification.name);
+        let ports = &self.variants[variant].description.ports;
+        played.then(|| Player::new(self.number as usize, Arc::clone(score), ports))
     }
 
     /// An instance in a host.
@@ -177,6 +187,7 @@ fn unconnected(port: &PortDescription) -> PortEnd {
             size,
             connections: Vec::new(),
             fault: None,
+            recorder: None,
         }),
         (PortKind::Service, PortDirection::Output) => PortEnd::Required(Calls {
             methods: Vec::new(),

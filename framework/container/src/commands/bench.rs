@@ -8,6 +8,7 @@ mod offspring;
 mod overhead;
 mod percentiles;
 mod processor_time;
+mod recording;
 mod recovery;
 
 use std::path::PathBuf;
@@ -29,6 +30,8 @@ enum Study {
     Detection(detection::DetectionArguments),
     /// What fault tolerance costs while nothing fails: time, memory, start.
     Overhead(overhead::OverheadArguments),
+    /// What recording costs, and what it holds of a hundred times the data.
+    Recording(recording::RecordingArguments),
     /// How long it takes from a fault until its component works again, under load.
     Recovery(recovery::RecoveryArguments),
     /// Keep all processors busy for a share of their time, until killed.
@@ -68,6 +71,7 @@ pub fn run(arguments: &BenchArguments) -> ExitCode {
     match &arguments.study {
         Study::Detection(arguments) => detection::run(arguments),
         Study::Overhead(arguments) => overhead::run(arguments),
+        Study::Recording(arguments) => recording::run(arguments),
         Study::Recovery(arguments) => recovery::run(arguments),
         Study::Load(arguments) => load::run(arguments),
         Study::Floor(arguments) => recovery::run_floor(arguments),

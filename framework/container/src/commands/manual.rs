@@ -60,6 +60,22 @@ Exit codes:
     7  --supervised: the container failed more often than --restarts allows
   130  a second Ctrl-C ended it at once";
 
+/// Of `replay`.
+pub const REPLAY: &str = "\
+Examples:
+  steadfast replay drive.mcap application.xml --rules rules.xml
+  steadfast replay drive.mcap application.xml --component path_planner --output again.mcap
+  steadfast replay drive.mcap application.xml --rules rules.xml --format json
+
+Exit codes:
+  0  it was replayed to its end, whatever was found
+  1  a profile or rule file has problems
+  2  a file is no recording, is damaged, or cannot be read or written
+  3  a library is missing, no component, or for another container
+  4  the recording does not fit the application, or ports do not fit the libraries
+  5  the component refused to be initialised or started, or hung in it
+  6  the system refused threads or memory";
+
 /// Of `fault`.
 pub const FAULT: &str = "\
 Examples:

@@ -1,10 +1,12 @@
 //! `steadfast run`: brings applications up, watches them, stops them in order.
 
-mod applications;
+pub(super) mod applications;
 mod duration;
 mod failure;
+mod libraries;
 mod live;
 mod models;
+mod recording;
 mod report;
 mod supervised;
 mod words;
@@ -17,9 +19,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
-use container::assembly::LibraryOptions;
 use container::control::Server;
-use container::library::LibrarySearch;
 use container::summary::Summary;
 use container::system::{Application, ClockKind, RunOptions, StateOptions, System};
 use crossbeam::channel::bounded;
@@ -27,9 +27,13 @@ use robot_simulation::Simulation;
 use system_profile::{Problem, load_world};
 
 use super::problems;
-pub(super) use failure::{Failed, exit_code};
-use failure::{refused, unwritable};
+use applications::Sources;
+use failure::unwritable;
+pub(super) use failure::{Failed, exit_code, refused};
+pub(in crate::commands) use libraries::libraries;
+pub use libraries::library_folders;
 use live::Watcher;
+use recording::RecordingArguments;
 use supervised::SupervisionArguments;
 
 /// How often a person's view is refreshed: fast enough to look alive, slow enough to be read.
@@ -37,9 +41,6 @@ const REFRESH_PERIOD: Duration = Duration::from_millis(100);
 
 /// Lines that may wait for the view; a view that lags loses lines, the event file does not.
 const ECHO_QUEUE: usize = 1024;
-
-/// Folders for libraries by environment, separated by colons.
-const LIBRARY_PATH_VARIABLE: &str = "STEADFAST_LIBRARY_PATH";
 
 /// What `steadfast run` is asked to do.
 #[derive(Debug, Args)]
@@ -89,6 +90,8 @@ pub struct RunArguments {
     fresh: bool,
     #[command(flatten)]
     supervision: SupervisionArguments,
+    #[command(flatten)]
+    recording: RecordingArguments,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -97,6 +100,18 @@ enum ClockArgument {
     Real,
     /// As fast as it goes; the same seed gives the same events
     Simulated,
+}
+
+impl RunArguments {
+    /// The files that say what is run.
+    fn sources(&self) -> Sources<'_> {
+        Sources {
+            applications: &self.applications,
+            rules: &self.rules,
+            inject: &self.inject,
+            search_path: &self.search_path,
+        }
+    }
 }
 
 /// Runs applications to their end.
@@ -117,7 +132,7 @@ pub fn run(arguments: &RunArguments) -> ExitCode {
 
 fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
     let supervised = supervised::join(arguments)?;
-    let applications = applications::load(arguments)?;
+    let applications = applications::load(&arguments.sources())?;
     let simulation = match supervised.as_ref().and_then(|it| it.world()) {
         Some(_elsewhere) => None,
         None => simulate(&applications, arguments.seed)?,
@@ -133,12 +148,14 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         seed: arguments.seed,
         events: arguments.events.clone(),
         echo: Some(echo),
-        libraries: libraries(arguments),
+        libraries: libraries(&arguments.library_path),
         state: StateOptions {
             folder: arguments.state_path.clone(),
             // A container that goes on where another has died goes on from what that has left.
             fresh: arguments.fresh && supervised.as_ref().is_none_or(|it| it.restarts() == 0),
         },
+        score: None,
+        recording: arguments.recording.options(),
         supervised: supervised.clone(),
     };
     let started = System::start(applications, simulation, options);
@@ -169,7 +186,15 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         let picture = picture.map_err(|error| unwritable(Some(path), &error))?;
         write(path, picture.as_bytes())?;
     }
-    conclude(arguments, &summary)
+    conclude(arguments, &summary)?;
+    let recording = summary.recording.as_ref();
+    match recording.and_then(|it| it.failure.clone()) {
+        Some(text) => Err(Failed {
+            code: exit_code::FILE,
+            text,
+        }),
+        None => Ok(()),
+    }
 }
 
 /// Lets an operator ask and command by `steadfast fault`. The robot runs without that, too.
@@ -254,30 +279,6 @@ fn watch_signals() -> Result<Arc<AtomicBool>, Failed> {
             })?;
     }
     Ok(asked)
-}
-
-/// Where libraries are found and how they are probed.
-fn libraries(arguments: &RunArguments) -> LibraryOptions {
-    LibraryOptions {
-        search: LibrarySearch::new(library_folders(&arguments.library_path)),
-        executable: std::env::current_exe().ok(),
-    }
-}
-
-/// Folders of libraries: those given, those of the environment, then that of this executable.
-pub fn library_folders(given: &[PathBuf]) -> Vec<PathBuf> {
-    let mut folders = given.to_vec();
-    if let Some(variable) = std::env::var_os(LIBRARY_PATH_VARIABLE) {
-        folders.extend(std::env::split_paths(&variable));
-    }
-    let executable = std::env::current_exe().ok();
-    folders.extend(
-        executable
-            .as_deref()
-            .and_then(Path::parent)
-            .map(PathBuf::from),
-    );
-    folders
 }
 
 fn write(path: &Path, content: &[u8]) -> Result<(), Failed> {

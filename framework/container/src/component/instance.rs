@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use crate::guard::loss::Loss;
 use crate::guard::{self, CallLimit, Callback, Ending, Guarded, HostServices, Misbehaviour, Trap};
 use crate::host::{Hosted, RemoteScene};
+use crate::replay::Player;
 use crate::wake::Wake;
 
 /// An instance, by its isolation tier.
@@ -14,6 +15,8 @@ pub enum Instance {
     Guarded(Guarded),
     /// `process`: in a host.
     Hosted(Box<Hosted>),
+    /// Nowhere: a recording is played.
+    Played(Box<Player>),
 }
 
 /// What happened to an instance while nobody called it.
@@ -57,6 +60,12 @@ impl From<Hosted> for Instance {
     }
 }
 
+impl From<Player> for Instance {
+    fn from(player: Player) -> Self {
+        Self::Played(Box::new(player))
+    }
+}
+
 impl Instance {
     /// Whether it can still be called.
     #[inline]
@@ -64,6 +73,7 @@ impl Instance {
         match self {
             Self::Guarded(guarded) => guarded.is_alive(),
             Self::Hosted(hosted) => hosted.is_alive(),
+            Self::Played(_) => true,
         }
     }
 
@@ -84,6 +94,7 @@ impl Instance {
         match self {
             Self::Guarded(guarded) => guarded.is_alive(),
             Self::Hosted(hosted) => hosted.is_alive() && !hosted.has_lost_host(),
+            Self::Played(_) => true,
         }
     }
 
@@ -99,6 +110,7 @@ impl Instance {
         match self {
             Self::Guarded(guarded) => guarded.call(callback, limit, loss, services),
             Self::Hosted(hosted) => hosted.call(callback, limit, loss, services),
+            Self::Played(player) => player.call(callback, services),
         }
     }
 
@@ -112,6 +124,7 @@ impl Instance {
                 Some(Stray::HostEnded)
             }
             Self::Hosted(hosted) => hosted.take_stray_fault().map(Stray::Thread),
+            Self::Played(_) => None,
         }
     }
 
@@ -127,6 +140,7 @@ impl Instance {
         match self {
             Self::Guarded(guarded) => guarded.quarantine(),
             Self::Hosted(hosted) => hosted.quarantine(),
+            Self::Played(_) => {}
         }
     }
 
@@ -135,6 +149,7 @@ impl Instance {
         match self {
             Self::Guarded(guarded) => guarded.inject(misbehaviour),
             Self::Hosted(hosted) => hosted.inject(misbehaviour),
+            Self::Played(_) => {}
         }
     }
 
@@ -143,6 +158,7 @@ impl Instance {
         match self {
             Self::Guarded(guarded) => guarded.misbehaved(),
             Self::Hosted(hosted) => hosted.misbehaved(),
+            Self::Played(_) => None,
         }
     }
 
@@ -160,6 +176,7 @@ impl Instance {
         match self {
             Self::Guarded(guarded) => guarded.allocated_bytes(),
             Self::Hosted(hosted) => hosted.allocated_bytes(),
+            Self::Played(_) => 0,
         }
     }
 
@@ -168,6 +185,7 @@ impl Instance {
         match self {
             Self::Guarded(guarded) => guarded.forget_allocations(),
             Self::Hosted(hosted) => hosted.forget_allocations(),
+            Self::Played(_) => {}
         }
     }
 
@@ -176,13 +194,14 @@ impl Instance {
         match self {
             Self::Guarded(guarded) => guarded.scene(trap?).map(Scene::Guarded),
             Self::Hosted(hosted) => hosted.scene().map(Scene::Hosted),
+            Self::Played(_) => None,
         }
     }
 
     /// How its host ended, in words; waits for that at most `limit`.
     pub fn end_of_host(&self, limit: Duration) -> Option<String> {
         match self {
-            Self::Guarded(_) => None,
+            Self::Guarded(_) | Self::Played(_) => None,
             Self::Hosted(hosted) => hosted.end_of_host(limit),
         }
     }

@@ -7,6 +7,7 @@ use fault_manager::DetectorId;
 use super::cell::ComponentCell;
 use super::tap::{InputTap, OutputTap};
 use crate::port::{Datum, Leftover, MOST_DEATHS, MailReceiver, MailSender, Receiver, Sender};
+use crate::recording::EventRecorder;
 use crate::wake::Wake;
 
 /// The container's end of a port, by the port's index.
@@ -53,6 +54,8 @@ pub struct EventOutput {
     pub connections: Vec<(MailSender, Arc<Wake>)>,
     /// By a rule each of its events is a fault.
     pub fault: Option<DetectorId>,
+    /// Who puts it down.
+    pub recorder: Option<Box<EventRecorder>>,
 }
 
 /// Messages that arrive by one connection.

@@ -20,6 +20,7 @@ use crate::guard::{ForeignBytes, ForeignBytesMut, ForeignText, HostServices, Req
 use crate::injection::Injections;
 use crate::library::PortDescription;
 use crate::port::{Receiver, Sent};
+use crate::replay::Score;
 use crate::schedule::BusyTime;
 use crate::supervision::{Observations, Scenes};
 use crate::world::World;
@@ -42,6 +43,8 @@ pub struct Environment {
     pub injections: Injections,
     /// The simulated world, if there is one.
     pub world: Option<Arc<World>>,
+    /// The recording that is played instead of components, if one is.
+    pub score: Option<Arc<Score>>,
     /// For how long a component keeps its executor busy, in simulated time.
     pub busy: BusyTime,
 }
@@ -244,6 +247,15 @@ impl Services {
         }
         let mut answer = Status::SUCCESS;
         let fault = output.fault;
+        if let Some(recorder) = &mut output.recorder {
+            if !data.copy_to(&mut recorder.scratch) {
+                return self.bad_pointer("raise");
+            }
+            let seen_ns = self.environment.clock.cycle_time_ns(self.cycle_ns);
+            recorder
+                .port
+                .record(seen_ns, self.cycle_ns, &recorder.scratch);
+        }
         for (sender, wake) in &mut output.connections {
             match sender.send(self.cycle_ns, self.incarnation, |bytes| data.copy_to(bytes)) {
                 Sent::Queued => wake.wake(),

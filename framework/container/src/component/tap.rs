@@ -28,6 +28,8 @@ pub struct Circumstances<'component> {
     pub incarnation: u32,
     /// Now, in nanoseconds of the container's clock.
     pub now_ns: u64,
+    /// Under which time a recording has it.
+    pub seen_ns: u64,
     /// Faults that are made on purpose, if there are any, with the component's and the port's
     /// number.
     pub injections: Option<(&'component Injections, usize, usize)>,

@@ -1,5 +1,7 @@
 //! All executors on one thread, in simulated time.
 
+mod playing;
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
@@ -12,8 +14,10 @@ use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::guard::loss::LostThread;
 use crate::lane::{Lane, Work};
+use crate::replay::Score;
 use crate::supervision::Supervisor;
 use crate::world::World;
+use playing::{Played, is_played};
 
 /// In simulated time a cycle of an executor without a period takes this long; without it two
 /// components that wake each other would stop the clock.
@@ -50,6 +54,8 @@ pub struct Simulated {
     supervisor: Arc<Supervisor>,
     world: Option<Arc<World>>,
     end_ns: u64,
+    /// The recording that is played, and for each executor whether all its components are.
+    played: Option<(Arc<Score>, Vec<bool>)>,
 }
 
 impl Simulated {
@@ -62,13 +68,23 @@ impl Simulated {
         end: Option<Duration>,
     ) -> Self {
         executors.sort_by(|a, b| (b.priority, &a.name).cmp(&(a.priority, &b.name)));
+        let environment = Arc::clone(supervisor.environment());
+        let begin_ns = environment.clock.now_ns();
+        let first = |one: &Executor| {
+            // Every run looks at the same moments: on the grid of the period.
+            begin_ns.next_multiple_of(nanoseconds(one.period).max(1))
+        };
         Self {
-            due_ns: vec![0; executors.len()],
+            due_ns: executors.iter().map(first).collect(),
+            played: environment.score.as_ref().map(|score| {
+                let played = executors.iter().map(|one| is_played(one, score));
+                (Arc::clone(score), played.collect())
+            }),
             executors,
             components,
             running: None,
             obeying: None,
-            environment: Arc::clone(supervisor.environment()),
+            environment,
             supervisor,
             world,
             end_ns: end.map_or(u64::MAX, nanoseconds),
@@ -78,6 +94,12 @@ impl Simulated {
     /// When an executor wants to run next.
     fn due(&self, index: usize) -> Option<u64> {
         let executor = &self.executors[index];
+        if let Some(score) = self.score_of(index) {
+            let mut members = executor.members.iter();
+            return members
+                .any(|member| score.has_cycle(member.number as usize))
+                .then_some(0);
+        }
         let wanted = executor.kind.has_period() || executor.wake.is_pending();
         wanted.then(|| self.due_ns[index])
     }
@@ -109,6 +131,12 @@ impl Simulated {
     fn finish_cycle(&mut self, index: usize, now_ns: u64, lane: &Lane) {
         let executor = &self.executors[index];
         let end_ns = now_ns + self.environment.busy.take_ns();
+        if let Some(score) = self.score_of(index) {
+            for member in &executor.members {
+                score.end_cycle(member.number as usize);
+            }
+            return;
+        }
         if !executor.kind.has_period() {
             self.due_ns[index] = end_ns + SIMULATED_CYCLE_NS;
             return;
@@ -171,12 +199,19 @@ impl Work for Simulated {
             let tick_ns = self.supervisor.due_ns();
             if let Some(tick_ns) = tick_ns
                 && next.is_none_or(|(time_ns, _)| tick_ns <= time_ns)
+                && self.cue_ns().is_none_or(|cue_ns| tick_ns <= cue_ns)
+                && !self.is_over(next.map(|(time_ns, _)| time_ns))
             {
                 if tick_ns > self.environment.clock.now_ns() && !self.advance(tick_ns) {
                     return;
                 }
                 self.supervisor.tick();
                 continue;
+            }
+            match self.play(next.map(|(time_ns, _)| time_ns), lane) {
+                Played::Nothing => {}
+                Played::Some => continue,
+                Played::All => return,
             }
             let Some((time_ns, index)) = next else {
                 // Nothing will ever happen by itself: only the world moves until the end.

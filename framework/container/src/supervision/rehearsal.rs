@@ -181,6 +181,7 @@ fn environment() -> Environment {
         scenes: Scenes::default(),
         injections: Injections::default(),
         world: None,
+        score: None,
         busy: BusyTime::default(),
     }
 }

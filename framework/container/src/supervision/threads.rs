@@ -201,6 +201,7 @@ mod tests {
             scenes: Scenes::default(),
             injections: Injections::default(),
             world: None,
+            score: None,
             busy: BusyTime::default(),
         };
         let (supervisor, _wanted) = Supervisor::new(

@@ -15,6 +15,8 @@ use crate::device::Devices;
 use crate::event_log::{Event, EventLog, EventWriter};
 use crate::injection::{Injections, still_to_come};
 use crate::outer_supervision::Supervised;
+use crate::recording::{Recorder, RecordingOptions};
+use crate::replay::Score;
 use crate::schedule::BusyTime;
 use crate::supervision::{Observations, Scenes};
 use crate::world::World;
@@ -36,29 +38,6 @@ impl ClockKind {
             Self::Simulated => "simulated",
         }
     }
-
-    /// What components share that run by this clock.
-    /// `run_time`: how long the run has lasted when this container comes into it.
-    pub(super) fn environment(
-        self,
-        events: EventLog,
-        world: Option<Arc<World>>,
-        run_time: Duration,
-    ) -> Environment {
-        Environment {
-            clock: match self {
-                ClockKind::Real => Clock::real_since(run_time),
-                ClockKind::Simulated => Clock::simulated(),
-            },
-            events,
-            devices: Devices::new(world.clone()),
-            observations: Observations::default(),
-            injections: Injections::default(),
-            scenes: Scenes::default(),
-            world,
-            busy: BusyTime::default(),
-        }
-    }
 }
 
 /// How an application is run.
@@ -78,6 +57,10 @@ pub struct RunOptions {
     pub libraries: LibraryOptions,
     /// Where checkpoints lie that outlive the container.
     pub state: StateOptions,
+    /// The recording that is played instead of components, in simulated time.
+    pub score: Option<Arc<Score>>,
+    /// What is recorded.
+    pub recording: RecordingOptions,
     /// The parent that supervises this container, if one does.
     pub supervised: Option<Arc<Supervised>>,
 }
@@ -101,17 +84,67 @@ impl RunOptions {
         all.iter().filter_map(to_come).collect()
     }
 
+    /// What the components share.
+    pub(super) fn environment(
+        &self,
+        events: EventLog,
+        world: Option<Arc<World>>,
+    ) -> Arc<Environment> {
+        // How long the run has lasted when this container comes into it.
+        let run_time = self.supervised.as_ref().map(|it| it.run_time());
+        Arc::new(Environment {
+            clock: match self.clock {
+                ClockKind::Real => Clock::real_since(run_time.unwrap_or_default()),
+                ClockKind::Simulated => Clock::simulated(),
+            },
+            events,
+            devices: Devices::new(world.clone()),
+            observations: Observations::default(),
+            injections: Injections::default(),
+            scenes: Scenes::default(),
+            world,
+            score: self.score.clone(),
+            busy: BusyTime::default(),
+        })
+    }
+
+    /// The recording that is asked for, and where events go for it.
+    pub(super) fn recorder(&self) -> (Option<Recorder>, Option<Sender<(u64, Event)>>) {
+        if !self.recording.any() {
+            return (None, None);
+        }
+        let mut options = self.recording.clone();
+        let restarts = self.supervised.as_ref().map_or(0, |it| it.restarts());
+        options.file = options.file.map(|file| after_restarts(file, restarts));
+        let (recorder, events) = Recorder::new(options, self.clock == ClockKind::Simulated);
+        (Some(recorder), Some(events))
+    }
+
     /// Opens the event file: a fresh one, or that of the container before.
-    pub(super) fn open_events(&mut self) -> Result<(EventLog, EventWriter), StartError> {
+    pub(super) fn open_events(
+        &mut self,
+        recorded: Option<Sender<(u64, Event)>>,
+    ) -> Result<(EventLog, EventWriter), StartError> {
         let (path, echo) = (self.events.as_deref(), self.echo.take());
         let waits = self.clock == ClockKind::Simulated;
         let opened = match self.supervised {
             Some(_) => EventLog::resume(path, waits, echo),
             None => EventLog::open(path, waits, echo),
         };
-        opened.map_err(|error| StartError::Output {
+        let opened = opened.map_err(|error| StartError::Output {
             path: self.events.clone().unwrap_or_default(),
             error,
-        })
+        });
+        opened.map(|(events, writer)| (events.recorded_by(recorded), writer))
     }
+}
+
+/// A container that goes on where another has died leaves that one's recording as it is, and writes
+/// `drive-restart-1.mcap` beside `drive.mcap`.
+fn after_restarts(file: PathBuf, restarts: u32) -> PathBuf {
+    if restarts == 0 {
+        return file;
+    }
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+    file.with_file_name(format!("{stem}-restart-{restarts}.mcap"))
 }

@@ -91,6 +91,12 @@ impl System {
                 "{dropped} symptoms were not judged: too many came at once"
             ));
         }
+        let not_recorded = self.recording.as_ref().map_or(0, |it| it.dropped());
+        if not_recorded > 0 {
+            self.notice(&format!(
+                "{not_recorded} data were not recorded: they came faster than they could be written"
+            ));
+        }
         let events_lost = self.environment.events.lost();
         self.environment.events.record(
             self.environment.clock.now_ns(),

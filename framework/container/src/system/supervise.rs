@@ -22,6 +22,7 @@ use crate::assembly::{Assembly, AssemblyProblem};
 use crate::component::{Component, Detectors, Environment, PortEnd};
 use crate::lane::SETUP_TOKEN;
 use crate::library::PortDescription;
+use crate::replay::Score;
 use crate::supervision::{Emergency, Monitors, Orders, Standbys, Supervisor};
 
 use super::applications::{Applications, Part};
@@ -39,6 +40,8 @@ struct Subjects<'start> {
     models: &'start [(String, ProcessModel)],
     assembly: &'start Assembly,
     manager: &'start FaultManager,
+    /// The recording that is played, if one is.
+    score: Option<&'start Score>,
 }
 
 /// The shell around the fault manager, and the channel by which it asks for standbys.
@@ -63,6 +66,7 @@ pub(super) fn supervise(
         models: &part.application.models,
         assembly,
         manager: &manager,
+        score: environment.score.as_deref(),
     });
     let subjects: Vec<Subjects<'_>> = subjects.collect();
     let mut problems = Vec::new();
@@ -110,6 +114,12 @@ impl Subjects<'_> {
     /// The rules of a component.
     fn rules_of(&self, component: usize) -> Option<&ComponentRules> {
         self.rules.components.get(component)
+    }
+
+    /// Whether a component is played from a recording.
+    fn is_played(&self, component: usize) -> bool {
+        let name = &self.specification.components[component].name;
+        self.score.is_some_and(|score| score.plays(name))
     }
 
     /// The name of a component, as rules use it.
@@ -176,6 +186,8 @@ impl Subjects<'_> {
         self.watch_fault_events(index);
         let resurrect = self.rules_of(index).and_then(|it| it.resurrect.as_ref());
         let backup = resurrect.and_then(|rule| rule.value.backup);
+        // What is played has no memory.
+        let backup = backup.filter(|_| !self.is_played(index));
         self.with_component(index, |component| {
             if let Some(detectors) = detectors {
                 component.services_mut().set_detectors(detectors);

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use container::assembly::LibraryOptions;
 use container::event_log::Event;
 use container::library::LibrarySearch;
+use container::recording::RecordingOptions;
 use container::status::ComponentStatus;
 use container::system::{Application, ClockKind, RunOptions, StateOptions, System};
 use crossbeam::channel::{Receiver, bounded};
@@ -64,6 +65,8 @@ pub fn run(plan: &Plan) -> Outcome {
             executable: None,
         },
         state: StateOptions::default(),
+        score: None,
+        recording: RecordingOptions::default(),
         supervised: None,
     };
     let system = System::start(vec![application], None, options).expect("it starts");

@@ -9,24 +9,37 @@ use system_profile::{
     Document, LoadOptions, Problem, Severity, load_application, load_injections, load_rules,
 };
 
-use super::{Failed, RunArguments, errors_on_terminal, exit_code, models, problems, show};
+use super::{Failed, errors_on_terminal, exit_code, models, problems, show};
+
+/// The files of a run.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::commands) struct Sources<'run> {
+    /// Application profiles.
+    pub(in crate::commands) applications: &'run [PathBuf],
+    /// Fault rules.
+    pub(in crate::commands) rules: &'run [PathBuf],
+    /// Faults that are made on purpose.
+    pub(in crate::commands) inject: &'run [PathBuf],
+    /// Folders with profiles.
+    pub(in crate::commands) search_path: &'run [PathBuf],
+}
 
 /// Loads all applications of a run.
-pub(super) fn load(arguments: &RunArguments) -> Result<Vec<Application>, Failed> {
-    let (mut applications, warnings) = read(arguments)?;
+pub(in crate::commands) fn load(sources: &Sources<'_>) -> Result<Vec<Application>, Failed> {
+    let (mut applications, warnings) = read(sources)?;
     show(&warnings);
     for application in &mut applications {
         let (rules, specification) = (&application.rules, &application.specification);
-        application.models = models::load(rules, specification, &arguments.search_path)?;
+        application.models = models::load(rules, specification, sources.search_path)?;
     }
     Ok(applications)
 }
 
 /// Reads them, without their models; with warnings.
-pub(super) fn read(arguments: &RunArguments) -> Result<(Vec<Application>, Vec<Problem>), Failed> {
-    let files = (arguments.applications.iter())
-        .chain(&arguments.rules)
-        .chain(&arguments.inject);
+pub(super) fn read(sources: &Sources<'_>) -> Result<(Vec<Application>, Vec<Problem>), Failed> {
+    let files = (sources.applications.iter())
+        .chain(sources.rules)
+        .chain(sources.inject);
     for file in files {
         std::fs::File::open(file).map_err(|error| Failed {
             code: exit_code::FILE,
@@ -37,15 +50,15 @@ pub(super) fn read(arguments: &RunArguments) -> Result<(Vec<Application>, Vec<Pr
         })?;
     }
     let mut reading = Reading {
-        arguments,
+        sources,
         options: LoadOptions {
-            search_paths: arguments.search_path.clone(),
+            search_paths: sources.search_path.to_vec(),
             dangling: Severity::Error,
         },
         problems: Vec::new(),
         sound: true,
     };
-    let specifications: Vec<ApplicationSpecification> = (arguments.applications.iter())
+    let specifications: Vec<ApplicationSpecification> = (sources.applications.iter())
         .filter_map(|file| reading.application(file))
         .collect();
     reading.check_names(&specifications);
@@ -53,7 +66,7 @@ pub(super) fn read(arguments: &RunArguments) -> Result<(Vec<Application>, Vec<Pr
         .map(|specification| reading.rules_of(specification, &specifications))
         .collect();
     if !reading.sound {
-        return Err(not_started(&arguments.applications, &reading.problems));
+        return Err(not_started(sources.applications, &reading.problems));
     }
     Ok((applications, reading.problems))
 }
@@ -98,7 +111,7 @@ fn not_started(files: &[PathBuf], found: &[Problem]) -> Failed {
 
 /// Files being read.
 struct Reading<'run> {
-    arguments: &'run RunArguments,
+    sources: &'run Sources<'run>,
     options: LoadOptions,
     problems: Vec<Problem>,
     /// Whether everything read so far can be used.
@@ -119,18 +132,18 @@ impl Reading<'_> {
         specification: &ApplicationSpecification,
         all: &[ApplicationSpecification],
     ) -> Application {
-        let arguments = self.arguments;
+        let sources = self.sources;
         let about = |files: &[PathBuf]| -> Vec<PathBuf> {
             let files = files.iter().cloned();
             files
                 .filter(|file| is_about(file, specification, all))
                 .collect()
         };
-        let outcome = load_rules(specification, &about(&arguments.rules), &self.options);
+        let outcome = load_rules(specification, &about(sources.rules), &self.options);
         self.found(outcome.problems);
         self.sound &= outcome.rules.is_some();
         let mut injections = Vec::new();
-        for file in about(&arguments.inject) {
+        for file in about(sources.inject) {
             let outcome = load_injections(specification, &file);
             self.found(outcome.problems);
             self.sound &= outcome.injections.is_some();

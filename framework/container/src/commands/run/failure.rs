@@ -21,7 +21,7 @@ pub(in crate::commands) struct Failed {
 }
 
 /// Applications that did not start.
-pub(super) fn refused(error: &StartError) -> Failed {
+pub(in crate::commands) fn refused(error: &StartError) -> Failed {
     let code = match error {
         StartError::Assembly(problems) => match problems.first() {
             Some(AssemblyProblem::Connection { .. }) => exit_code::CONNECTION,

@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
+use container::recording::RecordingSummary;
 use container::summary::Summary;
 
 /// Prints the summary.
@@ -38,6 +39,9 @@ pub(super) fn print(
         )?;
     }
     components(output, summary)?;
+    if let Some(recording) = &summary.recording {
+        recorded(output, recording)?;
+    }
     if let Some(picture) = picture {
         writeln!(output, "  picture of the drive: {}", picture.display())?;
     }
@@ -71,6 +75,38 @@ fn components(output: &mut impl Write, summary: &Summary) -> io::Result<()> {
         if let Some(fault) = &component.last_fault {
             writeln!(output, "  {:width$}  last fault: {fault}", "")?;
         }
+    }
+    Ok(())
+}
+
+fn recorded(output: &mut impl Write, recording: &RecordingSummary) -> io::Result<()> {
+    if let Some(file) = &recording.file {
+        writeln!(
+            output,
+            "  recording: {}, {} messages",
+            file.display(),
+            recording.messages
+        )?;
+    }
+    if let Some(last) = recording.black_box.last() {
+        writeln!(
+            output,
+            "  black box: {} files, the last is {}",
+            recording.black_box.len(),
+            last.display()
+        )?;
+    }
+    if recording.dropped > 0 {
+        let topics = recording.dropped_by_topic.iter();
+        let topics: Vec<String> = topics
+            .map(|(topic, count)| format!("{topic} {count}"))
+            .collect();
+        writeln!(
+            output,
+            "  {} data were not recorded: {}",
+            recording.dropped,
+            topics.join(", ")
+        )?;
     }
     Ok(())
 }

@@ -59,7 +59,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<u8, Failed> {
         });
     }
     // What is wrong with these is said here; warnings are for the container to say.
-    let (applications, _warnings) = applications::read(arguments)?;
+    let (applications, _warnings) = applications::read(&arguments.sources())?;
     let world = applications::world(&applications)?;
     let executable = std::env::current_exe().map_err(SuperviseError::from);
     let options = &arguments.supervision;

@@ -93,12 +93,10 @@ impl Services {
     /// taken is void.
     pub(in crate::component) fn begin_incarnation(&mut self, incarnation: u32) {
         self.incarnation = incarnation;
+        self.begin_taps_anew();
         for port in &mut self.ports {
             match port {
                 PortEnd::DataOutput(output) => {
-                    if let Some(tap) = &mut output.tap {
-                        tap.begin_anew();
-                    }
                     for (sender, _) in &output.connections {
                         sender.succeed(incarnation);
                     }
@@ -114,6 +112,17 @@ impl Services {
                     }
                 }
                 PortEnd::DataInput(_) | PortEnd::EventInput | PortEnd::Provided => {}
+            }
+        }
+    }
+
+    /// Whoever writes from now on is not compared with what was written before.
+    pub(crate) fn begin_taps_anew(&mut self) {
+        for port in &mut self.ports {
+            if let PortEnd::DataOutput(output) = port
+                && let Some(tap) = &mut output.tap
+            {
+                tap.begin_anew();
             }
         }
     }

@@ -113,6 +113,7 @@ fn circumstances(
         observations: &environment.observations,
         incarnation,
         now_ns,
+        seen_ns: environment.clock.cycle_time_ns(now_ns),
         injections,
     }
 }

@@ -6,6 +6,7 @@ use std::time::Duration;
 use super::{Circumstances, SafeDatum, VotedInput, Watch};
 use crate::injection::Passage;
 use crate::port::{Datum, Receiver};
+use crate::recording::PortRecorder;
 use crate::supervision::{SafetyGate, Sampler};
 
 /// What stands between one of a component's inputs and the component.
@@ -22,6 +23,8 @@ pub struct InputTap {
     pub samplers: Vec<Sampler>,
     /// Stands in for what is connected.
     pub voter: Option<Box<VotedInput>>,
+    /// Who puts down what arrives, and the safe value where that is read instead.
+    pub recorder: Option<PortRecorder>,
     /// When the datum was written that was delivered last.
     delivered_ns: u64,
     /// The cycle that has read the safe value: once, or a component that takes all that there is
@@ -48,6 +51,7 @@ impl InputTap {
             maximum_age: None,
             samplers: Vec::new(),
             voter: None,
+            recorder: None,
             delivered_ns: 0,
             made_safe_ns: None,
             changed: None,
@@ -72,6 +76,9 @@ impl InputTap {
         };
         if let Some(datum) = next {
             let stamp_ns = datum.stamp_ns();
+            if let Some(recorder) = &mut self.recorder {
+                recorder.record(at.seen_ns, stamp_ns, datum.bytes());
+            }
             let watch = self.watch.as_mut();
             let is_good = watch.is_none_or(|watch| !watch.look(stamp_ns, datum.bytes(), at));
             if is_good && self.gate.passes(stamp_ns) {
@@ -92,7 +99,14 @@ impl InputTap {
         if is_stale || !self.gate.passes(self.delivered_ns) {
             let safe = self.safe.as_mut()?;
             let again = self.made_safe_ns.replace(at.now_ns) == Some(at.now_ns);
-            return (!again).then(|| (false, safe.at(at.now_ns)));
+            if again {
+                return None;
+            }
+            let value = safe.at(at.now_ns);
+            if let Some(recorder) = &mut self.recorder {
+                recorder.record(at.seen_ns, at.now_ns, value);
+            }
+            return Some((false, value));
         }
         None
     }

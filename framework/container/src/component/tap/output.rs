@@ -3,6 +3,7 @@
 use super::{Circumstances, Watch};
 use crate::injection::Passage;
 use crate::port::Datum;
+use crate::recording::PortRecorder;
 use crate::supervision::Sampler;
 
 /// What stands between a component and one of its outputs.
@@ -13,6 +14,8 @@ pub struct OutputTap {
     pub watch: Option<Watch>,
     /// Process models that want to know.
     pub samplers: Vec<Sampler>,
+    /// Who puts it down.
+    pub recorder: Option<PortRecorder>,
 }
 
 impl OutputTap {
@@ -29,6 +32,7 @@ impl OutputTap {
             scratch: Datum::empty(size),
             watch: None,
             samplers: Vec::new(),
+            recorder: None,
         }
     }
 
@@ -59,6 +63,10 @@ impl OutputTap {
     pub fn look(&mut self, at: Circumstances<'_>) -> bool {
         for sampler in &self.samplers {
             sampler.sample(at.now_ns, self.scratch.bytes());
+        }
+        if let Some(recorder) = &mut self.recorder {
+            let written_ns = self.scratch.stamp_ns();
+            recorder.record(at.seen_ns, written_ns, self.scratch.bytes());
         }
         let Some(watch) = &mut self.watch else {
             return true;

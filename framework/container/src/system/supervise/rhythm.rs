@@ -15,7 +15,9 @@ use crate::supervision::{MemoryUse, Monitors, OverrunCount, Subject, WorkDone};
 /// rule.
 pub(super) fn watch(subjects: &Subjects<'_>, monitors: &mut Monitors) {
     for (number, detector) in subjects.manager.detectors().iter().enumerate() {
-        if !subjects.members.contains(&detector.component) {
+        // Of what is played the recording does not tell.
+        if !subjects.members.contains(&detector.component) || subjects.is_played(detector.component)
+        {
             continue;
         }
         let id = DetectorId(number);

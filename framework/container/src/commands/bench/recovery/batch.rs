@@ -10,6 +10,7 @@ use std::time::Duration;
 use clap::Args;
 use container::assembly::LibraryOptions;
 use container::library::LibrarySearch;
+use container::recording::RecordingOptions;
 use container::system::{Application, ClockKind, RunOptions, StateOptions, System};
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use system_profile::{LoadOptions, Problem, load_application, load_injections, load_rules};
@@ -77,6 +78,8 @@ fn measure(arguments: &BatchArguments) -> io::Result<Vec<Row>> {
             executable: std::env::current_exe().ok(),
         },
         state: StateOptions::default(),
+        score: None,
+        recording: RecordingOptions::default(),
         supervised: None,
     };
     let system = System::start(vec![application], None, options).map_err(io::Error::other)?;
