@@ -11,6 +11,7 @@ pub mod new;
 mod output;
 pub mod problems;
 pub mod replay;
+pub mod report;
 pub mod run;
 pub mod schema;
 pub mod world;

@@ -15,6 +15,7 @@ use commands::fault::{self, FaultArguments};
 use commands::man::{self, ManArguments};
 use commands::new::{self, NewArguments};
 use commands::replay::{self, ReplayArguments};
+use commands::report::{self, ReportArguments};
 use commands::run::{self, RunArguments};
 use commands::schema::{self, SchemaArguments};
 use commands::world::{self, WorldArguments};
@@ -49,6 +50,12 @@ enum Command {
     Run(Box<RunArguments>),
     /// Play a recording again: to a component, or to the rules alone.
     Replay(ReplayArguments),
+    /// Tell what happened in a run as one HTML page, which needs no network.
+    ///
+    /// In one paragraph, with the drive from above, the states of all components over time, and for
+    /// each fault what was seen, why it was judged so, what was done and how long that took. With a
+    /// recording the signals around each fault are plotted.
+    Report(ReportArguments),
     /// List, show, clear and inject faults of a running application.
     ///
     /// Talks to `steadfast run` over a socket that only its user may open.
@@ -100,6 +107,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
+        Command::Report(arguments) => report::run(&arguments),
         Command::Fault(arguments) => fault::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
