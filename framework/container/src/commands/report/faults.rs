@@ -160,7 +160,11 @@ fn show(article: &mut Markup, fault: &Fault, evidence: &Evidence) {
             figure.leaf(
                 "figcaption",
                 &[],
-                format_args!("{}, as recorded{more}", signal.name),
+                format_args!(
+                    "{}, as recorded{more}. Dotted: first symptom; red: confirmed; green: over; \
+                     dashed: limit.",
+                    signal.name
+                ),
             );
         }),
         (None, Some(drawing)) => article.element("figure", &[], |it| levels::draw(it, drawing)),

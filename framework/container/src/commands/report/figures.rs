@@ -154,23 +154,16 @@ mod tests {
         );
         let unknown = run(&[("hang", 20, Some(4))], None);
         let times = times(&[&guarded, &unknown]);
-        let found: Vec<(&str, &str, usize, &[u64], &[u64])> = (times.iter())
-            .map(|((kind, tier), it)| {
-                (
-                    kind.as_str(),
-                    tier.as_str(),
-                    it.faults,
-                    &it.phases[0][..],
-                    &it.phases[2][..],
-                )
-            })
-            .collect();
+        let found = times.iter().map(|((kind, tier), times)| {
+            let [detection, _, recovery] = &times.phases;
+            format!("{kind} {tier} {} {detection:?} {recovery:?}", times.faults)
+        });
         assert_eq!(
-            found,
+            found.collect::<Vec<_>>(),
             [
-                ("hang", "guarded", 2, &[10, 30][..], &[9][..]),
-                ("hang", "–", 1, &[20], &[4]),
-                ("panic", "guarded", 1, &[1], &[2]),
+                "hang guarded 2 [10, 30] [9]",
+                "hang – 1 [20] [4]",
+                "panic guarded 1 [1] [2]",
             ]
         );
     }

@@ -1,7 +1,7 @@
 //! Events, one after the other, to what is known of a run. Files come from other programs and other
 //! versions: an event that is not known is passed over, one that is no event is refused.
 
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
 use serde_json::Value;
@@ -22,6 +22,8 @@ pub(super) struct Gathering {
     pub(super) run: Run,
     /// Which container of the run is speaking, from 1.
     container: u32,
+    /// The applications that it has started.
+    started: BTreeSet<String>,
     /// What was told already, so that a recording of the same run is known.
     seen: HashSet<u64>,
     /// Incidents beyond [`MOST_INCIDENTS`].
@@ -88,11 +90,17 @@ impl Gathering {
         self.run
     }
 
-    /// A container begins; if it is not the first one, another has died.
+    /// An application begins; if it has begun before, its container has died, and this is another.
     fn begin(&mut self, event: &Value) {
-        self.container += 1;
+        let application = text(event, "application");
+        if self.container == 0 || self.started.contains(&application) {
+            self.container += 1;
+            self.started.clear();
+        }
+        self.started.insert(application);
+        let names: Vec<&str> = self.started.iter().map(String::as_str).collect();
         let run = &mut self.run;
-        run.application = text(event, "application");
+        run.application = names.join(" + ");
         run.clock = text(event, "clock");
         run.seed = event.get("seed").and_then(Value::as_u64);
     }
@@ -203,81 +211,4 @@ fn number(event: &Value, field: &str) -> u64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use serde_json::json;
-
-    use super::*;
-
-    fn gathered(events: &[Value]) -> Gathering {
-        let mut gathering = Gathering::new("events.jsonl".to_owned());
-        for event in events {
-            gathering.learn(event).expect("an event");
-        }
-        gathering
-    }
-
-    #[test]
-    fn the_last_verdict_of_an_id_counts() {
-        let verdict = |t_ns: u64, state: &str| {
-            json!({"t_ns": t_ns, "event": "verdict", "id": 3, "state": state, "confirmed_ns": 5,
-                   "handling_us": 2})
-        };
-        for (states, state, healed_ns) in [
-            (&["CONFIRMED"][..], "CONFIRMED", None),
-            (&["CONFIRMED", "HEALED", "CLEARED"], "CLEARED", Some(1)),
-            (&["HEALED", "CONFIRMED"], "CONFIRMED", None),
-        ] {
-            let events = states.iter().zip(0..);
-            let events: Vec<Value> = events.map(|(state, at)| verdict(at, state)).collect();
-            let run = gathered(&events).finish();
-            let fault = &run.faults[&FaultNumber {
-                container: 1,
-                id: 3,
-            }];
-            assert_eq!(fault.verdict.state, state);
-            assert_eq!(fault.healed_ns, healed_ns, "{states:?}");
-            assert_eq!(fault.end_ns(), Some(healed_ns.unwrap_or(2005)));
-        }
-    }
-
-    #[test]
-    fn a_second_container_counts_its_own_faults() {
-        let started = json!({"t_ns": 0, "event": "run_started", "application": "patrol"});
-        let verdict = json!({"t_ns": 1, "event": "verdict", "id": 1});
-        let run = gathered(&[started.clone(), verdict.clone(), started, verdict]).finish();
-        let labels: Vec<String> = run.faults.keys().map(ToString::to_string).collect();
-        assert_eq!(labels, ["1", "2.1"]);
-        assert_eq!(run.application, "patrol");
-    }
-
-    #[test]
-    fn what_is_told_twice_is_known() {
-        let event = json!({"t_ns": 7, "event": "notice", "message": "low battery"});
-        let gathering = gathered(&[event.clone()]);
-        assert!(gathering.knows(&event));
-        assert!(!gathering.knows(&json!({"t_ns": 8, "event": "notice"})));
-        assert_eq!(gathering.run.incidents[0].text, "low battery");
-    }
-
-    #[test]
-    fn what_is_no_event_is_refused_and_what_is_unknown_passed_over() {
-        let mut gathering = Gathering::default();
-        for (event, refused) in [
-            (json!({"t_ns": 0, "event": "of a later version"}), false),
-            (json!({"t_ns": 0, "event": "verdict", "id": "one"}), true),
-            (json!({"event": "state"}), true),
-            (json!(["t_ns"]), true),
-        ] {
-            assert_eq!(gathering.learn(&event).is_err(), refused, "{event}");
-        }
-    }
-
-    #[test]
-    fn incidents_have_a_bound_and_say_so() {
-        let notice = json!({"t_ns": 7, "event": "notice", "message": "again"});
-        let events = vec![notice; MOST_INCIDENTS + 3];
-        let run = gathered(&events).finish();
-        assert_eq!(run.incidents.len(), MOST_INCIDENTS + 1);
-        assert!(run.incidents[MOST_INCIDENTS].text.contains("3 more"));
-    }
-}
+mod tests;

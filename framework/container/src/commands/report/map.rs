@@ -50,10 +50,16 @@ pub(super) fn draw(markup: &mut Markup, run: &Run, anchor: &str) {
     });
 }
 
+/// Ticks that have room on an axis so long.
+fn most(length: f64) -> usize {
+    // From 2 to 8.
+    (length / 60.0).clamp(2.0, 8.0) as usize
+}
+
 fn grid(svg: &mut Markup, scales: &[Scale; 2], [width, height]: [f64; 2]) {
     let (left, right) = (Pixels(ROOM), Pixels(ROOM + width));
     let (top, bottom) = (Pixels(ROOM), Pixels(ROOM + height));
-    for tick in scales[0].ticks(8) {
+    for tick in scales[0].ticks(most(width)) {
         let x = Pixels(scales[0].place(tick));
         let y = Pixels(ROOM + height + 16.0);
         svg.void(
@@ -72,7 +78,7 @@ fn grid(svg: &mut Markup, scales: &[Scale; 2], [width, height]: [f64; 2]) {
             format!("{} m", number(tick)),
         );
     }
-    for tick in scales[1].ticks(8) {
+    for tick in scales[1].ticks(most(height)) {
         let y = Pixels(scales[1].place(tick));
         let (x, baseline) = (Pixels(ROOM - 4.0), Pixels(y.0 + 4.0));
         svg.void(

@@ -40,6 +40,9 @@ pub(super) fn page(runs: &[Run]) -> String {
                 contents(body, runs);
             }
             for (run, number) in runs.iter().zip(1..) {
+                if runs.len() > 1 {
+                    body.leaf("h2", &[], name(run));
+                }
                 write_run(body, run, &format!("run-{number}"));
             }
             if runs.len() > 1 {
@@ -68,7 +71,6 @@ fn contents(body: &mut Markup, runs: &[Run]) {
 
 fn write_run(body: &mut Markup, run: &Run, anchor: &str) {
     body.element("section", &[("id", &anchor)], |section| {
-        section.leaf("h2", &[], name(run));
         section.leaf(
             "p",
             &[("class", &"note")],

@@ -65,7 +65,7 @@ pub(super) fn extent(quantities: impl Iterator<Item = f64>) -> Option<[f64; 2]> 
         extent if extent > 0.0 => extent / 20.0,
         _ => (most.abs() / 20.0).max(0.01),
     };
-    (least <= most).then(|| [least - room, most + room])
+    (least <= most).then_some([least - room, most + room])
 }
 
 #[cfg(test)]
