@@ -77,7 +77,7 @@ pub(super) fn evidence(verdict: &Verdict) -> Evidence {
     match kind.as_str() {
         "exception" => exception(&fields),
         "value" | "jump" | "frozen" | "size" | "age" => of_port(kind, &fields, component),
-        "residual" => residual(&fields),
+        "residual" => residual(&fields, component),
         "votes" => votes(&fields),
         "overruns" | "heartbeat" | "memory" => of_work(kind, &fields),
         other => Evidence {

@@ -144,7 +144,7 @@ fn show(article: &mut Markup, fault: &Fault, evidence: &Evidence) {
                 moment(verdict.confirmed_ns, "confirmed", "confirmed"),
             ];
             let end = fault.end_ns();
-            moments.extend(end.map(|end_ns| moment(end_ns, "over", "over")));
+            moments.extend(end.map(|end_ns| moment(end_ns, "over", fault.end_word())));
             let plot = Plot {
                 signal,
                 window_ns: window_ns(fault),
@@ -161,7 +161,7 @@ fn show(article: &mut Markup, fault: &Fault, evidence: &Evidence) {
                 "figcaption",
                 &[],
                 format_args!(
-                    "{}, as recorded{more}. Dotted: first symptom; red: confirmed; green: over; \
+                    "{}, as recorded{more}. Dotted: first symptom; red: confirmed; green: handled or healed; \
                      dashed: limit.",
                     signal.name
                 ),

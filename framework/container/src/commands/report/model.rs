@@ -94,7 +94,16 @@ pub(super) struct Fault {
 }
 
 impl Fault {
-    /// When the component worked again, or the fault was over, as far as is known.
+    /// Whether it was over, or at least handled: what [`Self::end_ns`] is the time of.
+    pub(super) fn end_word(&self) -> &'static str {
+        if self.healed_ns.is_some() {
+            "healed"
+        } else {
+            "handled"
+        }
+    }
+
+    /// When the fault was over, or at least all was done about it, as far as is known.
     pub(super) fn end_ns(&self) -> Option<u64> {
         let Verdict {
             confirmed_ns,

@@ -100,7 +100,7 @@ fn legend(section: &mut Markup) {
             ("INACTIVE", "inactive"),
             ("ERROR", "in error"),
             ("fault-mark", "▼ fault confirmed"),
-            ("recovered", "▲ over"),
+            ("recovered", "▲ handled or healed"),
             ("injected", "| made on purpose"),
             ("restarted", "| container restarted"),
         ] {

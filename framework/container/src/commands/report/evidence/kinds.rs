@@ -147,7 +147,7 @@ fn range(fields: &Fields<'_>, place: &str) -> Option<Drawing> {
     }))
 }
 
-pub(super) fn residual(fields: &Fields<'_>) -> Evidence {
+pub(super) fn residual(fields: &Fields<'_>, component: &str) -> Evidence {
     let statistic = fields.number("statistic");
     Evidence {
         seen: format!(
@@ -161,7 +161,7 @@ pub(super) fn residual(fields: &Fields<'_>) -> Evidence {
         ),
         drawing: fields.level("decision statistic", "statistic", "threshold"),
         wanted: Some(Wanted {
-            topic: format!("/{}/residual", fields.text("monitor")),
+            topic: format!("/{component}/{}:residual", fields.text("monitor")),
             field: "statistic".to_owned(),
             kind: WantedKind::Value,
         }),

@@ -114,6 +114,10 @@ fn what_is_drawn_and_what_is_looked_for() {
 
     let age = of(json!({"age": {"port": "p", "age_ms": 210.0, "maximum_ms": 200.0}}));
     assert_eq!(age.wanted.expect("a signal").kind, WantedKind::Age);
+    let residual = of(json!({"residual": {"monitor": "drive", "statistic": 1, "threshold": 2}}));
+    let wanted = residual.wanted.expect("a signal");
+    assert_eq!(wanted.topic, "/sonar/drive:residual");
+    assert_eq!(wanted.field, "statistic");
     let size = of(json!({"size": {"port": "p", "size": 4, "expected": 8}}));
     assert_eq!((size.wanted, size.drawing), (None, None));
     let votes = of(
