@@ -31,6 +31,7 @@ mod recordings;
 mod recovery;
 mod reference_model;
 mod reference_robot;
+mod report;
 mod scenarios;
 mod services;
 mod several_applications;

@@ -96,6 +96,29 @@ fn the_component_in_five_minutes_works_as_written() {
         assert!(handled, "{kind}: {verdicts:?}");
     }
     assert_eq!(outcome.component("living_room")["state"], "ACTIVE");
+    report(&folder, &readme);
+}
+
+/// The README's first report, by the commands that stand there.
+fn report(folder: &Path, readme: &str) {
+    let section = readme
+        .split("<!-- command: report -->")
+        .nth(1)
+        .expect("the README has a first report");
+    let steadfast = artifacts().join("steadfast").display().to_string();
+    let commands = block(&format!("`commands`{section}"), "commands")
+        .replace("../steadfast/target/release/steadfast", &steadfast);
+    let mut shell = Command::new("sh");
+    shell.current_dir(folder).args(["-e", "-c", &commands]);
+    let finished = Watched::spawn(&mut shell).wait(BUILD_LIMIT);
+    assert_eq!(finished.code, Some(0), "{finished}");
+    let page = std::fs::read_to_string(folder.join("report.html")).expect("a report");
+    for part in [
+        "Segfault of living_room",
+        "living_room/heating: value, as recorded",
+    ] {
+        assert!(page.contains(part), "{part}: {page}");
+    }
 }
 
 /// Rules and faults of the README's first rule.

@@ -15,6 +15,7 @@ mod operator;
 mod output;
 pub mod problems;
 pub mod replay;
+pub mod report;
 pub mod run;
 pub mod schema;
 pub mod status;

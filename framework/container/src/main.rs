@@ -18,6 +18,7 @@ use commands::graph::{self, GraphArguments};
 use commands::man::{self, ManArguments};
 use commands::new::{self, NewArguments};
 use commands::replay::{self, ReplayArguments};
+use commands::report::{self, ReportArguments};
 use commands::run::{self, RunArguments};
 use commands::schema::{self, SchemaArguments};
 use commands::status::{self, StatusArguments};
@@ -64,6 +65,12 @@ enum Command {
     Explain(ExplainArguments),
     /// Draw who runs where and what goes from whom to whom.
     Graph(GraphArguments),
+    /// Tell what happened in a run as one HTML page, which needs no network.
+    ///
+    /// In one paragraph, with the drive from above, the states of all components over time, and for
+    /// each fault what was seen, why it was judged so, what was done and how long that took. With a
+    /// recording the signals around each fault are plotted.
+    Report(ReportArguments),
     /// List, show, clear and inject faults of a running application.
     ///
     /// Talks to `steadfast run` over a socket that only its user may open.
@@ -120,6 +127,7 @@ fn main() -> ExitCode {
         Command::Component(arguments) => component::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Graph(arguments) => graph::run(&arguments),
+        Command::Report(arguments) => report::run(&arguments),
         Command::Fault(arguments) => fault::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),

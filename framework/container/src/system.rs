@@ -92,7 +92,7 @@ impl System {
         let supervised = options.supervised.clone();
         let outside = supervised.as_ref().and_then(|it| it.world().cloned());
         let world = outside.or_else(|| simulation.map(|it| Arc::new(World::new(it, real))));
-        let (recorder, recorded) = options.recorder();
+        let (mut recorder, recorded) = options.recorder();
         let (events, writer) = options.open_events(recorded)?;
         let environment = options.environment(events, world.clone());
         let applications = Applications::new(applications);
@@ -112,6 +112,9 @@ impl System {
         let (supervisor, wanted) =
             supervise(&applications, &assembly, &environment).map_err(StartError::Assembly)?;
         recording::play(&applications, &assembly, &environment)?;
+        recorder
+            .iter_mut()
+            .for_each(|it| supervisor.record_models(it));
         let recording = recorder
             .map(|it| recording::record(it, &applications, &assembly, &environment, &options));
         let recording = recording.transpose()?;

@@ -105,7 +105,21 @@ impl Reader {
         channels.map(|(channel, _)| Arc::clone(channel)).collect()
     }
 
-    fn advance(&mut self) -> Result<Option<Message>, ReadError> {
+    /// The next message of a wanted topic. The others are not decoded, which is most of the work with
+    /// a camera's.
+    pub fn next_of(
+        &mut self,
+        mut is_wanted: impl FnMut(&str) -> bool,
+    ) -> Option<Result<Message, ReadError>> {
+        let next = self.advance(&mut is_wanted).transpose();
+        self.ended |= matches!(next, Some(Err(_)));
+        next
+    }
+
+    fn advance(
+        &mut self,
+        is_wanted: &mut dyn FnMut(&str) -> bool,
+    ) -> Result<Option<Message>, ReadError> {
         while !self.ended {
             let step = match self.reader.next_event() {
                 None => break,
@@ -128,7 +142,12 @@ impl Reader {
             };
             match step.map_err(|error| self.damaged(&error))? {
                 Step::More(bytes) => self.fill(bytes)?,
-                Step::Message(header, data) => return self.message(&header, &data).map(Some),
+                Step::Message(header, data) => {
+                    let channel = self.channels.get(&header.channel_id);
+                    if channel.is_none_or(|(channel, _)| is_wanted(&channel.topic)) {
+                        return self.message(&header, &data).map(Some);
+                    }
+                }
                 Step::Nothing => {}
             }
         }
@@ -189,9 +208,7 @@ impl Iterator for Reader {
     type Item = Result<Message, ReadError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        let next = self.advance().transpose();
-        self.ended |= matches!(next, Some(Err(_)));
-        next
+        self.next_of(|_topic| true)
     }
 }
 

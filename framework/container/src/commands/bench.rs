@@ -6,7 +6,7 @@ mod load;
 mod machine;
 mod offspring;
 mod overhead;
-mod percentiles;
+pub(in crate::commands) mod percentiles;
 mod processor_time;
 mod recording;
 mod recovery;

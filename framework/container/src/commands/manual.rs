@@ -78,6 +78,19 @@ Exit codes:
   5  the component refused to be initialised or started, or hung in it
   6  the system refused threads or memory";
 
+/// Of `report`.
+pub const REPORT: &str = "\
+Examples:
+  steadfast report events.jsonl --output report.html
+  steadfast report events.jsonl drive.mcap --summary summary.json --picture drive.svg --output report.html
+  steadfast report monday.jsonl tuesday.jsonl --output both.html --format json
+
+Exit codes:
+   0  the page is written
+   1  a file is no event file, summary or picture, or has no event in it
+   2  a file cannot be read or written, or is a recording that is damaged
+  64  more summaries or pictures than runs";
+
 /// Of `fault`.
 pub const FAULT: &str = "\
 Examples:

@@ -51,7 +51,8 @@ impl Recorder {
         (recorder, sender)
     }
 
-    /// Adds a port; `direction` is `input`, `output` or `event`. None if its data are too long.
+    /// Adds a port; `direction` is `input`, `output` or `event`, or `monitor` for figures of a process
+    /// model. None if its data are too long.
     pub fn port(
         &mut self,
         component: &str,

@@ -66,7 +66,12 @@ pub(super) fn find(
         only,
     };
     let (mut routes, mut problems) = (Routes::default(), Vec::new());
-    let is_port = |channel: &&Arc<Channel>| Topic::ALL.iter().all(|it| it.name() != channel.topic);
+    let is_port = |channel: &&Arc<Channel>| {
+        let is_topic = Topic::ALL.iter().any(|it| it.name() == channel.topic);
+        // What monitors made of the data is made once more.
+        let direction = channel.metadata.get("direction").map(String::as_str);
+        !is_topic && direction != Some("monitor")
+    };
     for channel in channels.iter().filter(is_port) {
         match search.route(channel) {
             Ok(Some(route)) => {

@@ -8,9 +8,11 @@ use crossbeam::queue::ArrayQueue;
 use fault_manager::detection::process_model::{InputMap, Monitor, Residual, ResidualMonitor};
 use fault_manager::detection::{Finding, NumberReader};
 use fault_manager::{DetectorId, Evidence, Number, Observation, Symptom};
+use system_model::data_type::{DataType, Field, Scalar};
 use system_model::fault::FaultKind;
 
 use super::Observations;
+use crate::recording::{EventRecorder, PortRecorder};
 use crate::status::ComponentStatus;
 
 /// Samples that may wait for a monitor: those of a hundred milliseconds at a kilohertz from ten
@@ -106,6 +108,14 @@ impl Reference {
             Self::Component(monitor, _) => monitor.reset(),
         }
     }
+
+    /// Residuals of the last step, and what the decision rule made of all so far.
+    fn figures(&self) -> (&[f64], f64) {
+        match self {
+            Self::Model(monitor) => (monitor.residuals(), monitor.statistic()),
+            Self::Component(monitor, _) => (monitor.residuals(), monitor.statistic()),
+        }
+    }
 }
 
 /// A monitor with its samples.
@@ -124,6 +134,8 @@ pub struct ModelMonitor {
     /// Which outputs have had a sample since the last step.
     sampled: Vec<bool>,
     complaining: bool,
+    /// Where figures are recorded.
+    recorder: Option<EventRecorder>,
 }
 
 impl ModelMonitor {
@@ -148,7 +160,39 @@ impl ModelMonitor {
             outputs: vec![f64::NAN; outputs],
             sampled: vec![false; outputs],
             complaining: false,
+            recorder: None,
         }
+    }
+
+    /// What is recorded of it: the component that is to blame, a name that no port has, and the type
+    /// of the figures, `statistic` and `residuals`.
+    pub fn recorded(&self) -> (&str, String, DataType) {
+        let name = format!("{}:residual", self.name);
+        let field = |path: &str, offset, count| Field {
+            path: path.to_owned(),
+            unit: String::new(),
+            offset,
+            scalar: Scalar::F64,
+            count,
+        };
+        let count = self.outputs.len();
+        let data_type = DataType {
+            name: "Residual".to_owned(),
+            size: (1 + count) * size_of::<f64>(),
+            layout_hash: 0,
+            fields: vec![
+                field("statistic", 0, 1),
+                field("residuals", size_of::<f64>(), count),
+            ],
+        };
+        (&self.status.name, name, data_type)
+    }
+
+    /// From now on the figures of each step are recorded.
+    pub fn record_by(&mut self, port: PortRecorder) {
+        let size = (1 + self.outputs.len()) * size_of::<f64>();
+        let scratch = vec![0; size].into_boxed_slice();
+        self.recorder = Some(EventRecorder { scratch, port });
     }
 
     /// The end for a port.
@@ -190,7 +234,11 @@ impl ModelMonitor {
     /// One step of the model, once every output has come.
     fn step(&mut self, at_ns: u64, observations: &Observations) {
         let at = Duration::from_nanos(at_ns);
-        match self.reference.step(at, &self.inputs, &self.outputs) {
+        let finding = self.reference.step(at, &self.inputs, &self.outputs);
+        if finding.is_some() {
+            self.record(at_ns);
+        }
+        match finding {
             Some(Finding::Passed) if self.complaining => {
                 self.complaining = false;
                 observations.report(Observation::Passed(self.detector));
@@ -201,6 +249,18 @@ impl ModelMonitor {
                 observations.report(Observation::Symptom(Box::new(self.symptom(at, &residual))));
             }
         }
+    }
+
+    fn record(&mut self, at_ns: u64) {
+        let Some(EventRecorder { scratch, port }) = &mut self.recorder else {
+            return;
+        };
+        let (residuals, statistic) = self.reference.figures();
+        let figures = std::iter::once(&statistic).chain(residuals);
+        for (place, figure) in scratch.chunks_exact_mut(size_of::<f64>()).zip(figures) {
+            place.copy_from_slice(&figure.to_ne_bytes());
+        }
+        port.record(at_ns, at_ns, scratch);
     }
 
     fn symptom(&self, at: Duration, residual: &Residual) -> Symptom {

@@ -10,6 +10,7 @@ use fault_manager::Observation;
 use super::LOOK_PERIOD;
 use super::supervisor::Supervisor;
 use crate::clock::nanoseconds;
+use crate::recording::Recorder;
 
 impl Supervisor {
     /// What time brings: orders that are due, deadlines of the fault manager.
@@ -48,6 +49,17 @@ impl Supervisor {
             self.environment.observations.report(Observation::Tick);
         }
         self.attend();
+    }
+
+    /// Lets the figures of all process models be recorded.
+    pub fn record_models(&self, recorder: &mut Recorder) {
+        let mut monitors = self.monitors.lock().unwrap_or_else(PoisonError::into_inner);
+        for model in &mut monitors.models {
+            let (component, name, data_type) = model.recorded();
+            if let Some(port) = recorder.port(component, &name, "monitor", &data_type) {
+                model.record_by(port);
+            }
+        }
     }
 
     /// When the next tick is due, in nanoseconds of the container's clock.

@@ -17,7 +17,7 @@ use crate::recording::{EventRecorder, Recorder, RecordingThread};
 
 /// Begins the recording: every data output and event output, and every data input at which rules or
 /// injections stand, which may read something else than was sent. All other inputs read what is
-/// recorded at the outputs that they are connected to.
+/// recorded at the outputs that they are connected to. What else is recorded has been added already.
 ///
 /// # Errors
 /// If a file cannot be made, or there is no thread.

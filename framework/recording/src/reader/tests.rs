@@ -63,6 +63,22 @@ fn what_was_written_is_read() {
 }
 
 #[test]
+fn only_what_is_wanted_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("drive.mcap");
+    written(&path, 250);
+    for (wanted, expected) in [("/events", 1), ("/front_sonar/range", 250), ("/camera", 0)] {
+        let mut reader = read(&path).unwrap();
+        let mut count = 0;
+        while let Some(message) = reader.next_of(|topic| topic == wanted) {
+            assert_eq!(message.unwrap().topic(), wanted);
+            count += 1;
+        }
+        assert_eq!(count, expected, "{wanted}");
+    }
+}
+
+#[test]
 fn a_file_that_is_cut_is_read_up_to_there() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("drive.mcap");

@@ -247,6 +247,11 @@ impl ResidualMonitor {
         self.judge.judge(missing, &self.residuals, 0.0)
     }
 
+    /// What was measured minus what was expected of each output.
+    pub fn residuals(&self) -> &[f64] {
+        &self.residuals
+    }
+
     /// What the decision rule made of the residuals so far, to be compared with the threshold.
     pub fn statistic(&self) -> f64 {
         self.judge.statistic()

@@ -135,6 +135,11 @@ impl Monitor {
         finding
     }
 
+    /// What was measured minus what the model says, or the filter predicted, of each output.
+    pub fn residuals(&self) -> &[f64] {
+        self.scratch.residual.as_slice()
+    }
+
     /// What the decision rule made of the residuals so far, to be compared with the threshold.
     pub fn statistic(&self) -> f64 {
         self.judge.statistic()
