@@ -11,18 +11,20 @@ use tests::{Watched, repository};
 
 /// Which crates of the workspace each crate of the framework may build on; development
 /// dependencies do not count. A new crate gets its place here.
-const FRAMEWORK: [(&str, &[&str]); 9] = [
+const FRAMEWORK: [(&str, &[&str]); 10] = [
     ("component-abi", &[]),
     ("component-sdk-derive", &[]),
     ("component-sdk", &["component-abi", "component-sdk-derive"]),
     ("system-model", &[]),
-    ("system-profile", &["system-model"]),
+    ("behavior-tree", &["system-model"]),
+    ("system-profile", &["behavior-tree", "system-model"]),
     ("fault-manager", &["system-model"]),
     ("robot-interface", &["component-sdk"]),
     ("robot-simulation", &["robot-interface", "system-model"]),
     (
         "container",
         &[
+            "behavior-tree",
             "component-abi",
             "fault-manager",
             "robot-simulation",

@@ -12,6 +12,7 @@ mod output;
 pub mod problems;
 pub mod run;
 pub mod schema;
+pub mod tree;
 pub mod world;
 
 pub use exit_code::USAGE;
