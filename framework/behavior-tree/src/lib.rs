@@ -39,5 +39,5 @@ pub use leaf::{Leaf, LeafContext};
 pub use plan::{NodeDescription, NodeId, Plan};
 pub use script::{MAX_SCRIPT_DEPTH, Script, ScriptError};
 pub use status::Status;
-pub use tree::{Observer, TickError, Tree};
+pub use tree::{MakeLeaf, Observer, TickError, Tree};
 pub use value::Value;

@@ -22,6 +22,9 @@ pub struct Tree {
     is_woken: bool,
 }
 
+/// Makes the leaf of a node, or says why it cannot.
+pub type MakeLeaf<'a> = dyn FnMut(&Plan, NodeId) -> Result<Box<dyn Leaf>, String> + 'a;
+
 /// Why a tick could not be finished. The tree has been halted then.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{path}: {message}")]
@@ -49,10 +52,7 @@ impl Tree {
     ///
     /// # Errors
     /// What `make_leaf` says of a leaf that it cannot make, with the leaf's path.
-    pub fn new(
-        plan: Arc<Plan>,
-        make_leaf: &mut dyn FnMut(&Plan, NodeId) -> Result<Box<dyn Leaf>, String>,
-    ) -> Result<Self, TickError> {
+    pub fn new(plan: Arc<Plan>, make_leaf: &mut MakeLeaf<'_>) -> Result<Self, TickError> {
         let mut leaves = Vec::with_capacity(plan.leaves.len());
         for &node in &plan.leaves {
             let leaf = make_leaf(&plan, node).map_err(|message| TickError {

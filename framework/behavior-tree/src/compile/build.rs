@@ -99,7 +99,7 @@ impl<'a> Builder<'_, 'a> {
         let resolved = match meaning(self.library, node, place.format, self.options) {
             Ok(meaning) => self.resolve(meaning, node, place),
             Err(finding) => {
-                self.findings.push(finding);
+                self.findings.push(*finding);
                 None
             }
         };

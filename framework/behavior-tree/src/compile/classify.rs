@@ -19,13 +19,13 @@ pub(super) fn meaning<'a>(
     node: &NodeDefinition,
     format: Format,
     options: &CompileOptions,
-) -> Result<Meaning<'a>, Finding> {
+) -> Result<Meaning<'a>, Box<Finding>> {
     let id = node.id.value.as_str();
     if node.class == Some(NodeClass::SubTree) {
         let found = library.trees.get(id);
         return match found {
             Some((tree, format)) => Ok(Meaning::SubTree(tree, *format)),
-            None => Err(no_tree(library, node)),
+            None => Err(no_tree(library, node).into()),
         };
     }
     if let Some(found) = built_in(id, format) {
@@ -37,15 +37,15 @@ pub(super) fn meaning<'a>(
         return Ok(Meaning::SubTree(tree, *format));
     }
     match library.models.get(id) {
-        Some(model) if model.class == NodeClass::SubTree => Err(no_tree(library, node)),
+        Some(model) if model.class == NodeClass::SubTree => Err(no_tree(library, node).into()),
         Some(model) => fits(node, model.class).map(|()| Meaning::Custom(model.class, Some(model))),
         None if options.stubs => Ok(Meaning::Custom(looks_like(node), None)),
-        None => Err(unknown(library, node)),
+        None => Err(unknown(library, node).into()),
     }
 }
 
 /// An element says `<Action ID="...">`, and the node must be one.
-fn fits(node: &NodeDefinition, class: NodeClass) -> Result<(), Finding> {
+fn fits(node: &NodeDefinition, class: NodeClass) -> Result<(), Box<Finding>> {
     let is_leaf = |class| matches!(class, NodeClass::Action | NodeClass::Condition);
     match node.class {
         Some(said) if said != class && !(is_leaf(said) && is_leaf(class)) => Err(Finding::error(
@@ -62,7 +62,8 @@ fn fits(node: &NodeDefinition, class: NodeClass) -> Result<(), Finding> {
                 class.name(),
                 node.id.value
             ),
-        )),
+        )
+        .into()),
         _ => Ok(()),
     }
 }
