@@ -11,12 +11,13 @@ use tests::{Watched, repository};
 
 /// Which crates of the workspace each crate of the framework may build on; development
 /// dependencies do not count. A new crate gets its place here.
-const FRAMEWORK: [(&str, &[&str]); 10] = [
+const FRAMEWORK: [(&str, &[&str]); 11] = [
     ("component-abi", &[]),
     ("component-sdk-derive", &[]),
     ("component-sdk", &["component-abi", "component-sdk-derive"]),
     ("system-model", &[]),
-    ("system-profile", &["system-model"]),
+    ("behavior-tree", &["system-model"]),
+    ("system-profile", &["behavior-tree", "system-model"]),
     ("fault-manager", &["system-model"]),
     ("recording", &["system-model"]),
     ("robot-interface", &["component-sdk"]),
@@ -24,6 +25,7 @@ const FRAMEWORK: [(&str, &[&str]); 10] = [
     (
         "container",
         &[
+            "behavior-tree",
             "component-abi",
             "fault-manager",
             "recording",

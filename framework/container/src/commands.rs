@@ -20,6 +20,7 @@ pub mod run;
 pub mod schema;
 pub mod status;
 pub mod top;
+pub mod tree;
 mod words;
 pub mod world;
 

@@ -23,6 +23,7 @@ use commands::run::{self, RunArguments};
 use commands::schema::{self, SchemaArguments};
 use commands::status::{self, StatusArguments};
 use commands::top::{self, TopArguments};
+use commands::tree::{self, TreeArguments};
 use commands::world::{self, WorldArguments};
 
 /// Fault tolerance for component-based robots, declared in XML.
@@ -86,6 +87,11 @@ enum Command {
     /// it. What XSD cannot say (names in other files, bounds that depend on each other) is known to
     /// `steadfast check` alone.
     Schema(SchemaArguments),
+    /// Check, show and try out behaviour trees of BehaviorTree.CPP and Nav2.
+    ///
+    /// Reads files of versions 3 and 4 with all that they include. Trees are executed in simulated
+    /// time with stubs for leaves: nodes that only answer.
+    Tree(TreeArguments),
     /// Measure how good Steadfast is at what it does.
     ///
     /// Each study prints a table; --format json has all figures, --picture a drawing.
@@ -131,6 +137,7 @@ fn main() -> ExitCode {
         Command::Fault(arguments) => fault::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
+        Command::Tree(arguments) => tree::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments, Arguments::command()),
         Command::Man(arguments) => man::run(&arguments, Arguments::command()),

@@ -11,7 +11,7 @@ use system_model::specification::Place;
 
 use crate::decode::{Decoded, decode};
 use crate::node::Node;
-use crate::parse::parse;
+use crate::parse::{Strictness, parse};
 use crate::problem::{Problem, ProblemLog, Severity};
 use crate::source::Source;
 use crate::suggest;
@@ -59,9 +59,17 @@ pub struct Document {
 impl Document {
     /// Opens and parses a file of at most [`MAX_FILE_SIZE`] bytes.
     pub fn open(path: impl Into<PathBuf>) -> Self {
-        let path = path.into();
+        Self::open_with(path.into(), Strictness::Strict)
+    }
+
+    /// As [`Document::open`], with `&` and `<` in the values of attributes read with a warning.
+    pub(crate) fn open_forgiving(path: impl Into<PathBuf>) -> Self {
+        Self::open_with(path.into(), Strictness::Forgiving)
+    }
+
+    fn open_with(path: PathBuf, strictness: Strictness) -> Self {
         match read(&path) {
-            Ok(bytes) => Self::from_bytes(path, &bytes),
+            Ok(bytes) => Self::from_bytes_with(path, &bytes, strictness),
             Err((message, help)) => {
                 let source = Arc::new(Source::new(path, ""));
                 let log = ProblemLog::new(Arc::clone(&source));
@@ -73,11 +81,14 @@ impl Document {
 
     /// Parses the bytes of a file; `path` is only its name.
     pub fn from_bytes(path: impl Into<PathBuf>, bytes: &[u8]) -> Self {
-        let path = path.into();
+        Self::from_bytes_with(path.into(), bytes, Strictness::Strict)
+    }
+
+    fn from_bytes_with(path: PathBuf, bytes: &[u8], strictness: Strictness) -> Self {
         let digest = Sha256::digest(bytes);
         let digest = Some(digest.iter().map(|byte| format!("{byte:02x}")).collect());
         match decode(bytes) {
-            Ok(decoded) => Self::from_text(path, decoded, digest),
+            Ok(decoded) => Self::from_text(path, decoded, digest, strictness),
             Err(failure) => {
                 let log = ProblemLog::new(Arc::new(Source::new(path, failure.text)));
                 let help = "save the file as UTF-8 and declare encoding=\"utf-8\"; euc-kr, utf-16 \
@@ -88,13 +99,25 @@ impl Document {
         }
     }
 
-    fn from_text(path: PathBuf, decoded: Decoded, digest: Option<String>) -> Self {
+    fn from_text(
+        path: PathBuf,
+        decoded: Decoded,
+        digest: Option<String>,
+        strictness: Strictness,
+    ) -> Self {
         let source = Arc::new(Source::new(path, decoded.text));
         let log = ProblemLog::new(Arc::clone(&source));
         for oddity in decoded.oddities {
             log.warning(oddity.span, oddity.message, Some(oddity.help));
         }
-        let parsed = parse(source.text());
+        let parsed = parse(source.text(), strictness);
+        for forgiven in parsed.forgiven {
+            let message = format!(
+                "not well-formed XML, read all the same: {}",
+                forgiven.message
+            );
+            log.warning(forgiven.span, message, Some(forgiven.help));
+        }
         let (root, malformed) = match parsed.root {
             Ok(root) => (Some(root), None),
             Err(malformed) => (None, Some(problem_of(&source, malformed))),
@@ -184,6 +207,14 @@ impl Document {
     /// Whether further problems would change nothing: the list is full of errors.
     pub(crate) fn is_given_up(&self) -> bool {
         !self.log.has_room_for(Severity::Error)
+    }
+
+    pub(crate) fn log(&self) -> &ProblemLog {
+        &self.log
+    }
+
+    pub(crate) fn place(&self, offset: usize) -> Place {
+        self.log.source().place(offset)
     }
 
     /// Adds an error about the outermost element.

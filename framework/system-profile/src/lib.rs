@@ -22,6 +22,7 @@ mod source;
 mod suggest;
 mod syntax;
 pub mod tree;
+mod trees;
 mod value;
 mod well_formed;
 
@@ -39,4 +40,5 @@ pub use resolve::{
 };
 pub use schema::{SCHEMAS, Schema};
 pub use source::Source;
+pub use trees::{TreeOptions, TreeOutcome, load_trees};
 pub use value::{Number, Value};

@@ -27,11 +27,22 @@ pub(crate) struct Parsed {
     pub(crate) root_name: Option<String>,
     /// The tree, or the first place where the document is not well-formed.
     pub(crate) root: Result<Element, Malformed>,
+    /// What a strict reader would have refused.
+    pub(crate) forgiven: Vec<Malformed>,
+}
+
+/// How much is asked of a document.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Strictness {
+    /// All that XML asks.
+    Strict,
+    /// `&` and `<` may stand in the values of attributes, as in files of behaviour trees.
+    Forgiving,
 }
 
 /// Parses a whole document.
-pub(crate) fn parse(text: &str) -> Parsed {
-    let mut builder = Builder::new(text);
+pub(crate) fn parse(text: &str, strictness: Strictness) -> Parsed {
+    let mut builder = Builder::new(text, strictness);
     let mut root = builder.run();
     if let Some(illegal) = well_formed::illegal_character(text) {
         let comes_first = match &root {
@@ -45,6 +56,7 @@ pub(crate) fn parse(text: &str) -> Parsed {
     Parsed {
         root_name: builder.root_name,
         root,
+        forgiven: builder.forgiven,
     }
 }
 
@@ -54,16 +66,20 @@ struct Builder<'a> {
     root: Option<Element>,
     root_name: Option<String>,
     elements: usize,
+    strictness: Strictness,
+    forgiven: Vec<Malformed>,
 }
 
 impl<'a> Builder<'a> {
-    fn new(text: &'a str) -> Self {
+    fn new(text: &'a str, strictness: Strictness) -> Self {
         Self {
             text,
             open: Vec::new(),
             root: None,
             root_name: None,
             elements: 0,
+            strictness,
+            forgiven: Vec::new(),
         }
     }
 
@@ -156,7 +172,7 @@ impl<'a> Builder<'a> {
     }
 
     fn attributes(
-        &self,
+        &mut self,
         tag: &BytesStart<'_>,
         tag_start: usize,
     ) -> Result<Vec<Attribute>, Malformed> {
@@ -186,7 +202,15 @@ impl<'a> Builder<'a> {
             let quote = self.text[name_span.end..].find(['"', '\'']).unwrap_or(0);
             let value_start = name_span.end + quote + 1;
             let value_span = value_start..value_start + found.value.len();
-            let value = well_formed::attribute_value(&found, value_span.clone())?;
+            let value = well_formed::attribute_value(&found, value_span.clone());
+            let value = match (value, self.strictness) {
+                (Err(_), Strictness::Forgiving) => {
+                    self.forgiven
+                        .push(well_formed::forgivable(&found, value_span.start));
+                    well_formed::forgiven_value(&found)
+                }
+                (value, _) => value?,
+            };
             key_start = value_span.end + 1;
             attributes.push(Attribute {
                 name: name.to_owned(),

@@ -104,6 +104,47 @@ pub(crate) fn attribute_value(
     value.map_err(|message| Malformed::new(span, message, REFERENCE_HELP))
 }
 
+/// What is forgiven in the value of an attribute that begins at `start`.
+pub(crate) fn forgivable(attribute: &Attribute<'_>, start: usize) -> Malformed {
+    let offset = attribute.value.find(['&', '<']).unwrap_or(0);
+    let sign = attribute.value[offset..].chars().next().unwrap_or('&');
+    Malformed::new(
+        start + offset..start + offset + sign.len_utf8(),
+        format!("`{sign}` in the value of an attribute"),
+        "BehaviorTree.CPP reads it, too, but other tools do not: write &amp; for & and &lt; for <",
+    )
+}
+
+/// The value of an attribute in which `&` and `<` may stand for themselves: references that are
+/// known are resolved, blanks of all kinds become blanks.
+pub(crate) fn forgiven_value(attribute: &Attribute<'_>) -> String {
+    let mut value = String::new();
+    let mut rest: &str = &attribute.value;
+    while let Some(start) = rest.find('&') {
+        value.push_str(&rest[..start]);
+        rest = &rest[start..];
+        let reference = rest.find(';').map(|end| &rest[1..end]);
+        let character = reference.and_then(|name| {
+            let resolved = BytesRef::new(name).resolve_char_ref().ok().flatten();
+            let named = || resolve_predefined_entity(name)?.chars().next();
+            resolved.or_else(named).filter(|it| is_allowed(*it))
+        });
+        let length = match (character, reference) {
+            (Some(character), Some(name)) => {
+                value.push(character);
+                name.len() + 2
+            }
+            _ => {
+                value.push('&');
+                1
+            }
+        };
+        rest = &rest[length..];
+    }
+    value.push_str(rest);
+    value.replace(['\t', '\n', '\r'], " ")
+}
+
 /// The character that a reference in a text stands for.
 pub(crate) fn resolve(reference: &BytesRef<'_>, span: Range<usize>) -> Result<char, Malformed> {
     let named = || {

@@ -42,7 +42,7 @@ pub struct CheckArguments {
 
 /// How the result is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
+pub(super) enum Format {
     /// For people: each problem with the offending text underlined
     Human,
     /// For programs: one JSON object
@@ -120,7 +120,7 @@ fn looks_like_xml(path: &Path) -> bool {
     }
 }
 
-fn exit_code(reports: &[FileReport], strict: bool) -> u8 {
+pub(super) fn exit_code(reports: &[FileReport], strict: bool) -> u8 {
     let counts = |problem: &Problem| strict || problem.severity == Severity::Error;
     if reports.iter().any(|report| !report.readable) {
         CANNOT_READ
@@ -135,7 +135,7 @@ fn exit_code(reports: &[FileReport], strict: bool) -> u8 {
     }
 }
 
-fn write_json(reports: &[FileReport], with_reading: bool) -> io::Result<()> {
+pub(super) fn write_json(reports: &[FileReport], with_reading: bool) -> io::Result<()> {
     let files: Value = reports
         .iter()
         .map(|report| {
@@ -166,7 +166,7 @@ fn problem_as_json(problem: &Problem) -> Value {
     })
 }
 
-fn write_human(reports: &[FileReport]) -> io::Result<()> {
+pub(super) fn write_human(reports: &[FileReport]) -> io::Result<()> {
     let colours = io::stdout().is_terminal();
     let mut output = io::BufWriter::new(io::stdout().lock());
     for report in reports {

@@ -190,6 +190,20 @@ Exit codes:
   1  the model has problems
   2  a run failed, or a file cannot be written";
 
+/// Of `tree`.
+pub const TREE: &str = "\
+Examples:
+  steadfast tree check navigate.xml --models nav2_tree_nodes.xml
+  steadfast tree check trees/*.xml --stubs --format json
+  steadfast tree show navigate.xml --stubs --format mermaid
+  steadfast tree run navigate.xml --stubs --ticks 20 --answer IsStuck=FAILURE
+  steadfast tree run mission.xml --stubs --tree Search --answer Approach=FAILURE:500
+
+Exit codes:
+  0  no problem, or warnings only and no --strict; the tree is shown, or was ticked
+  1  problems: of a file, or of a script or a port in a tick
+  2  a file cannot be read";
+
 /// Of `schema`.
 pub const SCHEMA: &str = "\
 Examples:

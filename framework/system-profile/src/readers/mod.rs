@@ -1,6 +1,7 @@
 //! One reader for each kind of profile: element in, typed profile out, problems in the log.
 
 mod application;
+pub(crate) mod behavior_tree;
 mod component;
 mod data_type;
 mod execution;
