@@ -92,7 +92,7 @@ fn one_frame_needs_no_terminal() {
         "{drawn}"
     );
     let blind = operator.run(&["top"]);
-    assert_eq!(blind.code, Some(3), "{blind}");
+    assert_eq!(blind.code, Some(2), "{blind}");
     assert!(blind.stderr.contains("--once"), "{blind}");
     let _outcome = application.interrupt(run).ended_well();
     let gone = operator.run(&["top", "--once"]);
