@@ -33,4 +33,5 @@ mod several_applications;
 mod stopping;
 mod supervised;
 mod tidy;
+mod trees;
 mod two_cameras;
