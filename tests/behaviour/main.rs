@@ -38,6 +38,7 @@ mod several_applications;
 mod stopping;
 mod supervised;
 mod tidy;
+mod trees;
 mod two_cameras;
 mod what_if;
 mod workbench;

@@ -324,7 +324,7 @@ impl<'a> Builder<'_, 'a> {
         let id = &node.id.value;
         self.findings.push(Finding::error(
             &node.id,
-            format!("{id} has {found} children, and must have {expected}"),
+            format!("{id} has {}, and must have {expected}", children(found)),
             "move, add or remove nodes below it",
         ));
     }
@@ -361,5 +361,13 @@ fn describe(
             .collect(),
         depth: place.depth,
         place: node.id.place.clone(),
+    }
+}
+
+fn children(count: usize) -> String {
+    match count {
+        0 => "no child".to_owned(),
+        1 => "1 child".to_owned(),
+        _ => format!("{count} children"),
     }
 }

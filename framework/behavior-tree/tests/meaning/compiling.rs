@@ -20,7 +20,7 @@ fn mistakes_are_found() {
     for (text, told) in [
         (
             "(Sequence )",
-            "Sequence has 0 children, and must have at least 1",
+            "Sequence has no child, and must have at least 1",
         ),
         (
             "(Inverter (AlwaysSuccess ) (AlwaysSuccess ))",
@@ -28,15 +28,15 @@ fn mistakes_are_found() {
         ),
         (
             "(IfThenElse (AlwaysSuccess ))",
-            "IfThenElse has 1 children, and must have 2 to 3",
+            "IfThenElse has 1 child, and must have 2 to 3",
         ),
         (
             "(RecoveryNode (AlwaysSuccess ))",
-            "RecoveryNode has 1 children, and must have 2",
+            "RecoveryNode has 1 child, and must have 2",
         ),
         (
             "(AlwaysSuccess (AlwaysSuccess ))",
-            "AlwaysSuccess has 1 children, and must have none",
+            "AlwaysSuccess has 1 child, and must have none",
         ),
         (
             "(Sequnce (AlwaysSuccess ))",
@@ -156,7 +156,7 @@ fn models_say_which_ports_there_are() {
         (
             NodeClass::Action,
             "(Known a=1 (AlwaysSuccess ))",
-            vec!["Known has 1 children, and must have none"],
+            vec!["Known has 1 child, and must have none"],
         ),
         (
             NodeClass::Decorator,
