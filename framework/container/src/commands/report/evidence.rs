@@ -80,6 +80,10 @@ pub(super) fn evidence(verdict: &Verdict) -> Evidence {
         "residual" => residual(&fields, component),
         "votes" => votes(&fields),
         "overruns" | "heartbeat" | "memory" => of_work(kind, &fields),
+        "order" => Evidence {
+            seen: format!("an operator ordered it: {}", fields.text("order")),
+            ..Evidence::default()
+        },
         other => Evidence {
             seen: format!("{other}: {value}"),
             ..Evidence::default()

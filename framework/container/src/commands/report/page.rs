@@ -117,7 +117,10 @@ fn write_drive(section: &mut Markup, run: &Run, anchor: &str) {
     section.element("div", &[("class", &"drive")], |drive| {
         if let Some(picture) = &run.picture {
             drive.element("figure", &[], |figure| {
-                figure.void("img", &[("alt", &"the drive from above"), ("src", picture)]);
+                let text = "the drive from above";
+                // The page is there before the picture is painted.
+                let decoding = ("decoding", &"async" as &dyn std::fmt::Display);
+                figure.void("img", &[("alt", &text), decoding, ("src", picture)]);
                 figure.leaf("figcaption", &[], "The drive as the world saw it.");
             });
         }

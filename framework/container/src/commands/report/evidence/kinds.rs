@@ -9,7 +9,7 @@ use crate::commands::report::amounts::{number, read};
 pub(super) struct Fields<'value>(pub(super) &'value Value);
 
 impl Fields<'_> {
-    fn text(&self, name: &str) -> String {
+    pub(super) fn text(&self, name: &str) -> String {
         let found = self.0.get(name).and_then(Value::as_str);
         found.unwrap_or_default().to_owned()
     }
