@@ -14,9 +14,9 @@ use crate::placing::{Found, placements, representative};
 use crate::resources::{Shortage, declared_shortages};
 use crate::solution::{Solution, lacking, solutions};
 
-/// Steps of all searches for a placement with room, in one generation: some tenths of a second. Where
-/// they do not suffice a candidate says so.
-const SEARCH_STEPS: usize = 100_000;
+/// Steps of all searches for a placement with room, in one generation: less than a second. Where they
+/// do not suffice a candidate says so.
+const SEARCH_STEPS: usize = 300_000;
 
 /// A way to do the task: Definition 2's composition of components across robots.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,6 +34,9 @@ pub struct Candidate {
 pub enum Room {
     /// They have.
     Enough,
+    /// They have, but robots are so full that another placement of the candidate's group may have
+    /// fewer hops: that was not found out within bounded time.
+    EnoughHere,
     /// They have not, nor for any other placement of the candidate's group.
     Lacking(Vec<Shortage>),
     /// They have not, and whether they have for another placement of its group was not found out
@@ -110,6 +113,7 @@ pub fn generate(
         placements.sort_unstable();
         let room = match chosen.found {
             Found::Fits => Room::Enough,
+            Found::FitsPerhapsNotFirst => Room::EnoughHere,
             Found::NoneFits => Room::Lacking(declared_shortages(task, &placements)),
             Found::GivenUp => Room::Unknown(declared_shortages(task, &placements)),
         };

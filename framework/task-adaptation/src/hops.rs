@@ -33,7 +33,7 @@ struct Table {
 }
 
 impl<'a> FewestHops<'a> {
-    /// `domains` has the robots that each component may be on, none of them empty; `edges` are pairs
+    /// `domains` has the robots that each component may be on, ascending, none of them empty; `edges` are pairs
     /// of positions between which a hop counts.
     pub(crate) fn new(
         domains: &'a [Vec<RobotIndex>],
@@ -69,11 +69,57 @@ impl<'a> FewestHops<'a> {
         let entries = sizes.iter().try_fold(1_usize, |product, size| {
             product.checked_mul(*size).filter(|it| *it <= MAX_TABLE)
         });
+        let entries = entries.ok_or(Entangled)?;
+        let fewest = match scope[..] {
+            [other] => self.on_one(position, other),
+            _ => self.on_several(position, &scope, &sizes, entries),
+        };
+        if let Some(last) = scope.last() {
+            self.tables_at[*last].push(position);
+        }
+        self.tables[position] = Table { scope, fewest };
+        Ok(())
+    }
+
+    /// The table of a component that depends on one before it only by links and by nothing behind it,
+    /// as in a chain or tree: either it is on the same robot, or on the best one and the links are hops.
+    fn on_one(&self, position: usize, other: usize) -> Vec<u32> {
+        let links = self.linked_before[position].len();
+        let behind = self.tables_at[position].iter();
+        let is_alone = { behind }.all(|table| self.tables[*table].scope == [position]);
+        if !is_alone {
+            let sizes = [self.domains[other].len()];
+            return self.on_several(position, &[other], &sizes, sizes[0]);
+        }
         let mut choices = vec![0; position + 1];
-        let mut fewest = Vec::with_capacity(entries.ok_or(Entangled)?);
-        for entry in 0..fewest.capacity() {
+        let options = 0..self.domains[position].len();
+        let alone = options.map(|choice| {
+            choices[position] = choice;
+            let behind = self.tables_at[position].iter();
+            let behind = behind.map(|table| self.tables[*table].of(&choices, self.domains));
+            behind.sum::<u32>()
+        });
+        let alone: Vec<u32> = alone.collect();
+        let elsewhere = alone.iter().min().map_or(0, |least| least + links as u32);
+        let here = |robot: &RobotIndex| {
+            let found = self.domains[position].binary_search(robot);
+            found.map_or(elsewhere, |choice| alone[choice].min(elsewhere))
+        };
+        self.domains[other].iter().map(here).collect()
+    }
+
+    fn on_several(
+        &self,
+        position: usize,
+        scope: &[usize],
+        sizes: &[usize],
+        entries: usize,
+    ) -> Vec<u32> {
+        let mut choices = vec![0; position + 1];
+        let mut fewest = Vec::with_capacity(entries);
+        for entry in 0..entries {
             let mut rest = entry;
-            for (other, size) in scope.iter().zip(&sizes).rev() {
+            for (other, size) in scope.iter().zip(sizes).rev() {
                 choices[*other] = rest % size;
                 rest /= size;
             }
@@ -84,11 +130,7 @@ impl<'a> FewestHops<'a> {
             });
             fewest.push(least.min().unwrap_or(0));
         }
-        if let Some(last) = scope.last() {
-            self.tables_at[*last].push(position);
-        }
-        self.tables[position] = Table { scope, fewest };
-        Ok(())
+        fewest
     }
 
     /// Hops of the best placement of all components.

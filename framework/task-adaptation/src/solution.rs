@@ -100,6 +100,20 @@ impl Solution {
         product(self.robots.iter().map(Vec::len))
     }
 
+    /// How many parts there are that no link connects.
+    pub(crate) fn parts(&self) -> usize {
+        let mut part: Vec<usize> = (0..self.components.len()).collect();
+        for (one, other) in &self.edges {
+            let (from, to) = (part[*one], part[*other]);
+            part.iter_mut()
+                .filter(|it| **it == from)
+                .for_each(|it| *it = to);
+        }
+        part.sort_unstable();
+        part.dedup();
+        part.len()
+    }
+
     /// How many ways there are to place those that are bound.
     pub(crate) fn groups(&self) -> u128 {
         product(self.bound.iter().map(|it| self.robots[*it].len()))

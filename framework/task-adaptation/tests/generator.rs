@@ -1,9 +1,11 @@
 //! The generator equals brute force on all small cases.
 
+#[path = "support/brute_force.rs"]
+mod brute_force;
 mod support;
 
+use brute_force::brute_force;
 use proptest::prelude::*;
-use support::brute_force::brute_force;
 use support::chain;
 use system_model::task::{ComponentClass, HopCount, TaskLink, TaskSpecification};
 use task_adaptation::{Candidate, Room, generate};
@@ -91,7 +93,7 @@ fn task(shape: &Shape) -> TaskSpecification {
 
 fn found(candidate: &Candidate) -> ((Vec<system_model::task::Placement>, u32), bool) {
     assert!(
-        !matches!(candidate.room, Room::Unknown(_)),
+        !matches!(candidate.room, Room::Unknown(_) | Room::EnoughHere),
         "a small case is searched to its end"
     );
     let fits = candidate.room == Room::Enough;
@@ -162,4 +164,17 @@ fn where_a_robot_is_full_others_help() {
     let robots: Vec<usize> = candidate.placements.iter().map(|it| it.robot).collect();
     assert_eq!((robots, candidate.hops), (vec![0, 0, 1, 1, 2, 2], 2));
     assert_eq!(candidate.room, Room::Enough);
+}
+
+#[test]
+fn where_all_are_nearly_full_a_placement_is_found_all_the_same() {
+    let task = chain(10, 20, 1, 3.0);
+    for candidate in generate(&task, None).expect("few links").candidates {
+        let has_room = matches!(candidate.room, Room::Enough | Room::EnoughHere);
+        assert!(has_room, "{candidate:?}");
+        for robot in 0..10 {
+            let here = candidate.placements.iter().filter(|it| it.robot == robot);
+            assert!(here.count() <= 3, "{candidate:?}");
+        }
+    }
 }

@@ -213,7 +213,7 @@ impl Decision {
                     let placements = &candidate.placements;
                     Some(reordered(answer, running.placements, placements))
                 }
-                (Room::Enough, None) => None,
+                (Room::Enough | Room::EnoughHere, None) => None,
                 _ => Some(Answer::NotAsked),
             };
             if answer.is_none() {

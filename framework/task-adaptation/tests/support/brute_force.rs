@@ -8,6 +8,9 @@ use system_model::task::{HopCount, Placement, TaskSpecification};
 /// A combination: placements in the order of the task, and its hops.
 pub type Combination = (Vec<Placement>, u32);
 
+/// Number of the set of components; of those that are bound which is on which robot.
+type Group = (usize, Vec<(usize, usize)>);
+
 /// What came of it.
 pub struct BruteForce {
     /// How many combinations there are.
@@ -19,7 +22,7 @@ pub struct BruteForce {
 
 /// Enumerates everything.
 pub fn brute_force(task: &TaskSpecification) -> BruteForce {
-    let mut groups: BTreeMap<(usize, Vec<(usize, usize)>), Vec<Combination>> = BTreeMap::new();
+    let mut groups: BTreeMap<Group, Vec<Combination>> = BTreeMap::new();
     let mut combinations = 0;
     for (number, set) in sets(task).into_iter().enumerate() {
         let mut all = vec![Vec::new()];

@@ -1,7 +1,5 @@
 //! Tasks for tests and benchmarks.
 
-pub mod brute_force;
-
 use system_model::task::{
     ComponentClass, DecisionOptions, GenerationOptions, QualityPreferences, StateMachine,
     TaskComponent, TaskInstance, TaskLink, TaskResource, TaskRobot, TaskSpecification,
