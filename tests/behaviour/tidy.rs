@@ -11,7 +11,7 @@ use tests::{Watched, repository};
 
 /// Which crates of the workspace each crate of the framework may build on; development
 /// dependencies do not count. A new crate gets its place here.
-const FRAMEWORK: [(&str, &[&str]); 11] = [
+const FRAMEWORK: [(&str, &[&str]); 12] = [
     ("component-abi", &[]),
     ("component-sdk-derive", &[]),
     ("component-sdk", &["component-abi", "component-sdk-derive"]),
@@ -19,6 +19,7 @@ const FRAMEWORK: [(&str, &[&str]); 11] = [
     ("behavior-tree", &["system-model"]),
     ("system-profile", &["behavior-tree", "system-model"]),
     ("fault-manager", &["system-model"]),
+    ("task-adaptation", &["system-model"]),
     ("recording", &["system-model"]),
     ("robot-interface", &["component-sdk"]),
     ("robot-simulation", &["robot-interface", "system-model"]),
@@ -32,6 +33,7 @@ const FRAMEWORK: [(&str, &[&str]); 11] = [
             "robot-simulation",
             "system-model",
             "system-profile",
+            "task-adaptation",
         ],
     ),
 ];

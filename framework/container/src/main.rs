@@ -8,6 +8,7 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
 
+use commands::adapt::{self, AdaptArguments};
 use commands::bench::{self, BenchArguments};
 use commands::check::{self, CheckArguments};
 use commands::completions::{self, CompletionsArguments};
@@ -44,7 +45,7 @@ enum Command {
     /// Check profiles and rules: every problem with its place and what to do about it.
     ///
     /// Reads profiles of all kinds (component, application, composite, service type, data type,
-    /// system, world), reference models, fault rules and injections, in the encoding that they
+    /// system, world), reference models, tasks, fault rules and injections, in the encoding that they
     /// declare, and everything they refer to. No library is loaded.
     Check(CheckArguments),
     /// Run one application, or several in one container.
@@ -76,6 +77,12 @@ enum Command {
     ///
     /// Talks to `steadfast run` over a socket that only its user may open.
     Fault(FaultArguments),
+    /// Show what self-adaptation would decide, without a robot.
+    ///
+    /// A task may be done by several components on several robots. This finds the ways to do it, judges
+    /// each by its errors and by the resources that it leaves, and says which one would be chosen and
+    /// why not the others.
+    Adapt(AdaptArguments),
     /// Write a project that builds, runs and passes its own test: a component or an application.
     ///
     /// The project lies in a new folder of its name. It refers to the SDK of a clone of Steadfast,
@@ -135,6 +142,7 @@ fn main() -> ExitCode {
         Command::Graph(arguments) => graph::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Fault(arguments) => fault::run(&arguments),
+        Command::Adapt(arguments) => adapt::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
         Command::Tree(arguments) => tree::run(&arguments),

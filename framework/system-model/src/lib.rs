@@ -13,4 +13,5 @@ pub mod process_model;
 pub mod profile;
 pub mod rules;
 pub mod specification;
+pub mod task;
 pub mod world;

@@ -31,7 +31,8 @@ pub use document::{Document, MAX_FILE_SIZE};
 pub use node::Node;
 pub use problem::{MAX_PROBLEMS_PER_FILE, Problem, ProblemLog, Severity};
 pub use readers::{
-    PROFILE_ROOTS, ProcessModelOutcome, WorldOutcome, load_process_model, load_world, read_profile,
+    PROFILE_ROOTS, ProcessModelOutcome, TaskOutcome, WorldOutcome, load_process_model, load_task,
+    load_world, read_profile,
 };
 pub use reading::reading;
 pub use resolve::{

@@ -16,7 +16,7 @@ pub struct Schema {
 }
 
 /// The schemas by name, the one that holds all others first.
-pub const SCHEMAS: [Schema; 12] = [
+pub const SCHEMAS: [Schema; 13] = [
     schema(
         "steadfast",
         &crate::PROFILE_ROOTS,
@@ -55,6 +55,7 @@ pub const SCHEMAS: [Schema; 12] = [
         &["process_model"],
         "profiles/schema/process-model.xsd",
     ),
+    schema("task", &["task_profile"], "profiles/schema/task.xsd"),
     schema(
         "fault-rules",
         &["fault_rules"],
@@ -92,6 +93,8 @@ const FILES: &[(&str, &str)] = files![
     "profiles/schema/service-type.xsd",
     "profiles/schema/steadfast.xsd",
     "profiles/schema/system.xsd",
+    "profiles/schema/task-robots.xsd",
+    "profiles/schema/task.xsd",
     "profiles/schema/world.xsd",
     "rules/schema/actuator-elements.xsd",
     "rules/schema/conduct-elements.xsd",

@@ -27,7 +27,7 @@ pub const TABLE: [(u8, &str); 12] = [
     (DONE, "what was asked for is done"),
     (
         REFUSED,
-        "refused: a file has problems, a running application says no, or a name or folder cannot be used",
+        "refused: a file has problems, a running application says no, a task cannot be done, or a name or folder cannot be used",
     ),
     (
         FILE,

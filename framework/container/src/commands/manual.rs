@@ -12,7 +12,8 @@ A first session:
 
 Exit codes, of all commands:
    0  what was asked for is done
-   1  refused: a file has problems, a running application says no, or a name cannot be used
+   1  refused: a file has problems, a running application says no, a task cannot be done, or a name
+      cannot be used
    2  a file cannot be read or written, there is no terminal, or no running application answers
    3  a library is missing, no component, or for another container
    4  ports or connections do not fit the libraries
@@ -177,6 +178,17 @@ Exit codes:
   0  drawn
   1  a profile or rule file has problems
   2  a file cannot be read or written";
+
+/// Of `adapt`.
+pub const ADAPT: &str = "\
+Examples:
+  steadfast adapt plan profiles/tasks/visual_servoing_two_robots.xml
+  steadfast adapt plan task.xml --format json
+
+Exit codes:
+  0  a candidate is chosen, or what runs is kept
+  1  the file has problems, or no candidate is feasible
+  2  the file cannot be read, or the output cannot be written";
 
 /// Of `bench`.
 pub const BENCH: &str = "\

@@ -13,6 +13,7 @@ mod project;
 pub(crate) mod rules;
 mod service_type;
 mod system;
+mod task;
 mod world;
 
 use system_model::profile::Profile;
@@ -20,10 +21,11 @@ use system_model::profile::Profile;
 use crate::document::Document;
 
 pub use process_model::{ProcessModelOutcome, load_process_model};
+pub use task::{TaskOutcome, load_task};
 pub use world::{WorldOutcome, load_world};
 
 /// The roots that [`read_profile`] understands.
-pub const PROFILE_ROOTS: [&str; 13] = [
+pub const PROFILE_ROOTS: [&str; 14] = [
     "component_profile",
     "package_profile",
     "application_profile",
@@ -35,6 +37,7 @@ pub const PROFILE_ROOTS: [&str; 13] = [
     "OPRoSProject",
     world::WORLD_ROOT,
     process_model::MODEL_ROOT,
+    task::TASK_ROOT,
     rules::RULES_ROOT,
     injection::INJECTIONS_ROOT,
 ];
@@ -80,7 +83,7 @@ pub(crate) const APPLICATION_RULES: [&str; 3] = ["dependency", "fault", "heartbe
 /// Makes a document typed. A profile with errors is still returned, as far as it could be
 /// understood; ask [`Document::has_errors`] before it is used. A world is looked through for its
 /// problems, but it is no profile; [`load_world`] returns it. So is a reference model
-/// ([`load_process_model`]), and a rule file, whose rules mean something only together with their
+/// ([`load_process_model`]), a task ([`load_task`]), and a rule file, whose rules mean something only together with their
 /// application; [`load_rules`](crate::load_rules) returns them, and
 /// [`load_injections`](crate::load_injections) those of an injection file.
 pub fn read_profile(document: &Document) -> Option<Profile> {
@@ -92,6 +95,11 @@ pub fn read_profile(document: &Document) -> Option<Profile> {
     }
     if root.name() == process_model::MODEL_ROOT {
         let _looked_through = process_model::read(&root);
+        root.finish();
+        return None;
+    }
+    if root.name() == task::TASK_ROOT {
+        let _looked_through = task::read(&root);
         root.finish();
         return None;
     }

@@ -4,7 +4,7 @@
 //! empty range or take memory without end.
 
 mod arena;
-mod quantity;
+pub(super) mod quantity;
 mod robot;
 
 use std::path::Path;

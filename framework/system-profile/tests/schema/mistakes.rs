@@ -128,6 +128,70 @@ const READER_ONLY: &[(&str, Edit)] = &[
             "backoff=\"9s\" retry_max=\"9\"",
         ),
     ),
+    (
+        "a name in another file or elsewhere in this one",
+        (
+            "task.xml",
+            "<run sub_task=\"move\"/>",
+            "<run sub_task=\"moev\"/>",
+        ),
+    ),
+    (
+        "a name in another file or elsewhere in this one",
+        (
+            "task.xml",
+            "robot=\"R2\"/></estimate>",
+            "robot=\"R3\"/></estimate>",
+        ),
+    ),
+    (
+        "a bound depends on another element's value",
+        (
+            "task.xml",
+            "functional_weight=\"0.9\"",
+            "functional_weight=\"0.1\"",
+        ),
+    ),
+    (
+        "what an element refers to is of the wrong kind",
+        (
+            "task.xml",
+            "<through component=\"filter\"/>",
+            "<through component=\"motor\"/>",
+        ),
+    ),
+    (
+        "what an element refers to is of the wrong kind",
+        ("task.xml", "<link from=\"camera\"", "<link from=\"filter\""),
+    ),
+    (
+        "a second element among any number of others",
+        (
+            "task.xml",
+            "<instance component=\"filter\"/>",
+            "<instance component=\"filter\"/><instance component=\"filter\"/>",
+        ),
+    ),
+    (
+        "what runs is not there, or not all that must",
+        (
+            "task.xml",
+            "<use component=\"camera\" robot=\"R1\"/>",
+            "<use component=\"camera\" robot=\"R2\"/>",
+        ),
+    ),
+    (
+        "what runs is not there, or not all that must",
+        ("task.xml", "<use component=\"camera\" robot=\"R1\"/>", ""),
+    ),
+    (
+        "a state that nothing leads to",
+        (
+            "task.xml",
+            "<transition from=\"following\" event=\"reached\" to=\"there\"/>",
+            "",
+        ),
+    ),
 ];
 
 /// What looks odd and is right: aliases, any order, blanks, other namespaces.
@@ -196,6 +260,8 @@ const RIGHT: &[Edit] = &[
         "<?xml-model href=\"world.xsd\"?><world_profile>",
     ),
     ("injections.xml", "at=\"1s\" for=\"2s\"", "for=\"2s\""),
+    ("task.xml", "essential=\"false\"", "essential=\"off\""),
+    ("task.xml", "dwell=\"5s\"", "dwell=\"0\""),
 ];
 
 /// A copy of the samples with each edit made in a copy of its file, which lies beside it.

@@ -15,7 +15,7 @@ use crate::xmllint;
 const INSERTIONS: usize = 30;
 
 /// Elements of which the readers read nothing, not even what is in them.
-const UNREAD: [&str; 17] = [
+const UNREAD: [&str; 19] = [
     "/description",
     "/license_policy",
     "/app_domain",
@@ -30,6 +30,8 @@ const UNREAD: [&str; 17] = [
     "process_model/copyright",
     "world_profile/version",
     "world_profile/copyright",
+    "task_profile/version",
+    "task_profile/copyright",
     "subcomponent/id",
     "subcomponent/type",
     "subcomponent/version",

@@ -25,7 +25,7 @@ where
 }
 
 /// The number in a mandatory attribute.
-pub(super) fn attribute<T>(
+pub(in crate::readers) fn attribute<T>(
     node: &Node<'_>,
     name: &'static str,
     range: RangeInclusive<T>,
@@ -36,7 +36,7 @@ where
     within(&node.required_attribute(name)?, &range)
 }
 
-fn within<T>(value: &Value<'_>, range: &RangeInclusive<T>) -> Option<T>
+pub(in crate::readers) fn within<T>(value: &Value<'_>, range: &RangeInclusive<T>) -> Option<T>
 where
     T: Number + PartialOrd + Display,
 {
