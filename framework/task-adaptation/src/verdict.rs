@@ -158,6 +158,27 @@ pub struct Verdict {
     pub phases: Phases,
 }
 
+impl Verdict {
+    /// The record of a decision that begins.
+    pub(crate) fn begun(decision: u64, trigger: Trigger, monitoring: Duration) -> Self {
+        Self {
+            decision,
+            trigger,
+            combinations: 0,
+            groups: 0,
+            left_out: 0,
+            lacking: Vec::new(),
+            candidates: Vec::new(),
+            nearest: None,
+            outcome: Outcome::NoCandidate,
+            phases: Phases {
+                monitoring,
+                ..Phases::default()
+            },
+        }
+    }
+}
+
 impl Judged {
     /// P_T; nothing where there are no numbers.
     pub fn total(&self) -> f64 {

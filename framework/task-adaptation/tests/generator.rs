@@ -85,6 +85,8 @@ fn task(shape: &Shape) -> TaskSpecification {
     if shape.excludes && shape.optional > 1 {
         task.exclusions = vec![(shape.components..all).collect()];
     }
+    // More than the largest of these shapes has groups.
+    task.generation.limit = 10_000;
     if shape.essential_hops {
         task.generation.hops = HopCount::Essential;
     }

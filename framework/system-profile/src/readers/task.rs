@@ -111,3 +111,6 @@ pub(super) fn read(root: &Node<'_>) -> Option<TaskSpecification> {
     robots::warn_of_missing(root, &task);
     Some(task)
 }
+
+#[cfg(test)]
+mod tests;

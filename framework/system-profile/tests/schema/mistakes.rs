@@ -3,6 +3,7 @@
 
 mod in_profiles;
 mod in_rules;
+mod in_tasks;
 
 use std::path::{Path, PathBuf};
 
@@ -128,70 +129,6 @@ const READER_ONLY: &[(&str, Edit)] = &[
             "backoff=\"9s\" retry_max=\"9\"",
         ),
     ),
-    (
-        "a name in another file or elsewhere in this one",
-        (
-            "task.xml",
-            "<run sub_task=\"move\"/>",
-            "<run sub_task=\"moev\"/>",
-        ),
-    ),
-    (
-        "a name in another file or elsewhere in this one",
-        (
-            "task.xml",
-            "robot=\"R2\"/></estimate>",
-            "robot=\"R3\"/></estimate>",
-        ),
-    ),
-    (
-        "a bound depends on another element's value",
-        (
-            "task.xml",
-            "functional_weight=\"0.9\"",
-            "functional_weight=\"0.1\"",
-        ),
-    ),
-    (
-        "what an element refers to is of the wrong kind",
-        (
-            "task.xml",
-            "<through component=\"filter\"/>",
-            "<through component=\"motor\"/>",
-        ),
-    ),
-    (
-        "what an element refers to is of the wrong kind",
-        ("task.xml", "<link from=\"camera\"", "<link from=\"filter\""),
-    ),
-    (
-        "a second element among any number of others",
-        (
-            "task.xml",
-            "<instance component=\"filter\"/>",
-            "<instance component=\"filter\"/><instance component=\"filter\"/>",
-        ),
-    ),
-    (
-        "what runs is not there, or not all that must",
-        (
-            "task.xml",
-            "<use component=\"camera\" robot=\"R1\"/>",
-            "<use component=\"camera\" robot=\"R2\"/>",
-        ),
-    ),
-    (
-        "what runs is not there, or not all that must",
-        ("task.xml", "<use component=\"camera\" robot=\"R1\"/>", ""),
-    ),
-    (
-        "a state that nothing leads to",
-        (
-            "task.xml",
-            "<transition from=\"following\" event=\"reached\" to=\"there\"/>",
-            "",
-        ),
-    ),
 ];
 
 /// What looks odd and is right: aliases, any order, blanks, other namespaces.
@@ -306,7 +243,12 @@ fn problems(path: &Path) -> Vec<String> {
 
 #[test]
 fn every_mistake_is_refused_by_reader_and_schema() {
-    let mistakes = [in_profiles::MISTAKES, in_rules::MISTAKES].concat();
+    let mistakes = [
+        in_profiles::MISTAKES,
+        in_rules::MISTAKES,
+        in_tasks::MISTAKES,
+    ]
+    .concat();
     let edited = edited(&mistakes);
     let schema = xmllint::is_there().then(|| {
         let schema = xmllint::printed(edited.folder.path(), "steadfast");
@@ -321,12 +263,13 @@ fn every_mistake_is_refused_by_reader_and_schema() {
 
 #[test]
 fn what_the_schema_cannot_know_the_reader_does() {
-    let edited = edited(READER_ONLY.iter().map(|(_, edit)| edit));
+    let reader_only = [READER_ONLY, in_tasks::READER_ONLY].concat();
+    let edited = edited(reader_only.iter().map(|(_, edit)| edit));
     let schema = xmllint::is_there().then(|| {
         let schema = xmllint::printed(edited.folder.path(), "steadfast");
         xmllint::validate(&schema, &edited.files)
     });
-    for (file, (reason, edit)) in edited.files.iter().zip(READER_ONLY) {
+    for (file, (reason, edit)) in edited.files.iter().zip(&reader_only) {
         assert!(
             !problems(file).is_empty(),
             "the reader takes {edit:?}: {reason}"

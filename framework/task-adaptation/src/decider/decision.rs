@@ -8,7 +8,7 @@ use super::{DeciderState, Effect, Observation, Running};
 use crate::estimate::{Answer, reordered};
 use crate::generator::{Candidate, Generation, Room};
 use crate::judge::{Choice, choose, judge_all, nearest};
-use crate::verdict::{GenerationFailure, Outcome, Phases, Rejection, Trigger, Verdict};
+use crate::verdict::{GenerationFailure, Outcome, Rejection, Trigger, Verdict};
 
 /// The generator is bounded to less than a second; a shell that has not called it by then never will.
 const SYNTHESIS_DEADLINE: Duration = Duration::from_secs(5);
@@ -60,21 +60,7 @@ impl Decision {
         let monitoring = bad_since.map_or(Duration::ZERO, |since| now.saturating_sub(since));
         Self {
             step: Step::Synthesise,
-            verdict: Verdict {
-                decision: number,
-                trigger,
-                combinations: 0,
-                groups: 0,
-                left_out: 0,
-                lacking: Vec::new(),
-                candidates: Vec::new(),
-                nearest: None,
-                outcome: Outcome::NoCandidate,
-                phases: Phases {
-                    monitoring,
-                    ..Phases::default()
-                },
-            },
+            verdict: Verdict::begun(number, trigger, monitoring),
             candidates: Vec::new(),
             since: now,
             changing_since: None,
