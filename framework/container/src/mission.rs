@@ -5,6 +5,7 @@
 //! would give it, or a message; how it goes is looked at in the ticks that follow.
 
 mod binding;
+mod calls;
 mod leaves;
 mod reach;
 mod record;
@@ -13,6 +14,7 @@ mod status;
 mod thread;
 
 pub use binding::{Ground, Outlets, bind};
+pub use calls::{Caller, Calls};
 pub use reach::Reach;
 pub use runner::{Runner, Setting};
 pub use status::{Phase, TreeStatus};

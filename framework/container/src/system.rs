@@ -26,7 +26,7 @@ use crate::component::{ComponentCell, Environment};
 use crate::event_log::{Event, EventWriter};
 use crate::lane::{Crew, Lane, remaining};
 use crate::library::PortDescription;
-use crate::mission::{MissionThreads, Runner, TreeStatus};
+use crate::mission::{Calls, MissionThreads, Runner, TreeStatus};
 use crate::recording::RecordingThread;
 use crate::status::{ComponentStatus, Meter};
 use crate::summary::Summary;
@@ -74,6 +74,8 @@ pub struct System {
     manager_threads: ManagerThreads,
     trees: Vec<Arc<TreeStatus>>,
     mission_threads: MissionThreads,
+    /// What trees ask of services.
+    calls: Arc<Calls>,
     persistence: Persistence,
     writer: EventWriter,
     recording: Option<RecordingThread>,
@@ -116,8 +118,7 @@ impl System {
         let (supervisor, wanted) =
             supervise(&applications, &assembly, &environment).map_err(StartError::Assembly)?;
         let supervisor = Arc::new(supervisor);
-        let runners = missions::bind_all(&applications, &assembly, &supervisor)
-            .map_err(StartError::Assembly)?;
+        let (runners, calls) = missions::bind_all(&applications, &assembly, &supervisor)?;
         recording::play(&applications, &assembly, &environment)?;
         recorder
             .iter_mut()
@@ -155,6 +156,7 @@ impl System {
             manager_threads: ManagerThreads::default(),
             trees: runners.iter().map(Runner::status).collect(),
             mission_threads: MissionThreads::default(),
+            calls,
             persistence,
             writer,
             recording,

@@ -20,6 +20,8 @@ pub(crate) struct Ladder {
     /// A secondary was chosen and has not worked yet: there is nothing that a reset could bring
     /// back.
     replacing: bool,
+    /// When a tree was begun last.
+    handled_at: Option<Duration>,
 }
 
 /// What is to be tried next.
@@ -33,6 +35,8 @@ pub(crate) enum Rung {
     },
     /// The secondary of this index.
     Replace(usize),
+    /// A behaviour tree, once within the window.
+    HandleByTree,
     /// Nothing that brings the component back.
     Exhausted,
 }
@@ -63,12 +67,22 @@ impl Ladder {
             self.replacing = true;
             return Rung::Replace(secondary);
         }
+        let in_vain = |at: &Duration| at.saturating_add(rule.window) > now;
+        if component.rules.handle.is_some() && !self.handled_at.as_ref().is_some_and(in_vain) {
+            self.handled_at = Some(now);
+            return Rung::HandleByTree;
+        }
         Rung::Exhausted
     }
 
     /// An operator has looked at it: resets are counted from nothing. A secondary that was used up
     /// stays so.
     pub fn renew(&mut self) {
+        self.handled_at = None;
+        self.renew_resets();
+    }
+
+    fn renew_resets(&mut self) {
         self.resets.clear();
         self.in_vain = 0;
         self.replacing = false;
@@ -90,7 +104,7 @@ impl Ladder {
     pub fn worked(&mut self) {
         self.in_vain = 0;
         if self.replacing {
-            self.renew();
+            self.renew_resets();
         }
     }
 
@@ -223,6 +237,7 @@ mod tests {
             match ladder.climb(&component, Duration::ZERO) {
                 Rung::Reset { .. } => "reset".to_owned(),
                 Rung::Replace(secondary) => format!("secondary {secondary}"),
+                Rung::HandleByTree => "tree".to_owned(),
                 Rung::Exhausted => "exhausted".to_owned(),
             }
         };

@@ -8,6 +8,7 @@ use system_model::fault::FaultKind;
 use crate::detectors::Detectors;
 use crate::emergency::Emergency;
 use crate::graph::{Graph, Level};
+use crate::handling_by_tree::HandledByTree;
 use crate::history::History;
 use crate::life::Fault;
 use crate::observation::{Detector, DetectorId, DetectorKind, Observation};
@@ -29,6 +30,8 @@ pub struct FaultManager {
     pub(crate) history: History,
     pub(crate) components: Vec<ComponentState>,
     pub(crate) emergency: Option<Emergency>,
+    /// What trees are handling.
+    pub(crate) handled: Vec<HandledByTree>,
     pub(crate) running: bool,
     /// The latest time that was told.
     pub(crate) now: Duration,
@@ -56,6 +59,7 @@ impl FaultManager {
                 .map(|_| ComponentState::default())
                 .collect(),
             emergency: None,
+            handled: Vec::new(),
             running: false,
             now: Duration::ZERO,
             last_action: 0,
@@ -130,7 +134,10 @@ impl FaultManager {
         let actions = actions.map(|work| work.deadline).min();
         let emergency = self.emergency.as_ref().and_then(Emergency::deadline);
         let lives = self.history.earliest(|fault| self.life_due(fault));
-        [actions, emergency, lives].into_iter().flatten().min()
+        [actions, emergency, lives, self.tree_due()]
+            .into_iter()
+            .flatten()
+            .min()
     }
 
     /// All faults that are not cleared, and the last of those that are, oldest first.

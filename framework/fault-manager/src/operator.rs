@@ -93,7 +93,9 @@ impl FaultManager {
                 let ladder = &mut self.components[component].ladder;
                 match action {
                     Action::Replace { secondary, .. } => ladder.replace(secondary),
-                    _ => ladder.renew(),
+                    // A tree that handles a fault is on a rung of that very ladder.
+                    _ if by.is_none() => ladder.renew(),
+                    _ => {}
                 }
                 self.recover(id, action, sentence, now);
             }

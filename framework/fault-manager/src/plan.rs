@@ -68,6 +68,15 @@ pub enum Action {
         /// Index of the component.
         component: usize,
     },
+    /// A behaviour tree is begun for a fault of the component; it ends as the tree does.
+    Handle {
+        /// Index of the component.
+        component: usize,
+        /// Index of the tree, behind those of all components.
+        tree: usize,
+        /// By then it must have ended.
+        within: Duration,
+    },
     /// All actuators, each by its stop category; latched until [`Effect::Rearm`].
     EmergencyStop,
 }
@@ -79,7 +88,8 @@ impl Action {
             Self::Reset { component, .. }
             | Self::Replace { component, .. }
             | Self::Stop { component }
-            | Self::Destroy { component } => Some(*component),
+            | Self::Destroy { component }
+            | Self::Handle { component, .. } => Some(*component),
             Self::EmergencyStop => None,
         }
     }

@@ -78,6 +78,18 @@ impl System {
         system
     }
 
+    /// The tree of an application by its name, as rules use it.
+    pub fn tree(&self, application: usize, name: &str) -> Option<usize> {
+        let application = &self.applications[application];
+        let is_it = |tree: &usize| {
+            let own = self.components[*tree].name.as_str();
+            // With several applications in one container names begin with that of the application.
+            let short = own.strip_prefix(application.name.as_str());
+            own == name || short.and_then(|it| it.strip_prefix('/')) == Some(name)
+        };
+        application.trees.clone().find(is_it)
+    }
+
     fn add(&mut self, scope: &Scope) {
         let application = self.applications.len();
         let first = self.components.len();

@@ -1,5 +1,7 @@
 //! Trees are bound to the components of an assembled application: every leaf gets its ends of ports.
 
+mod ports;
+
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
@@ -8,27 +10,23 @@ use std::time::Duration;
 use behavior_tree::component_nodes::{ComponentNodeKind, component_node};
 use behavior_tree::{Leaf, NodeId, Plan, Tree, Value};
 use fault_manager::OperatorOrder;
-use fault_manager::detection::NumberReader;
 use system_model::data_type::DataType;
 use system_model::mission::DeclaredTree;
-use system_model::rules::{ComponentRules, SafeValue};
-use system_model::specification::{ExecutionKind, QueuePolicy};
+use system_model::rules::ComponentRules;
 
+use super::calls::Calls;
 use super::leaves::control::{Ordered, Wish};
-use super::leaves::data::{Outlet, ReadPort, WaitForData, Watched, WritePort};
+use super::leaves::data::{Outlet, ReadPort, WaitForData};
 use super::leaves::evaluation::{Age, Deviation};
 use super::leaves::faults::{Await, Clear, Fault, Present, Raise};
-use super::leaves::messages::{RaiseEvent, WaitForEvent};
 use super::leaves::running::Running;
 use super::leaves::states::{Estimate, State};
 use super::{Reach, Runner, Setting, TreeStatus};
-use crate::assembly::{Assembly, AssemblyProblem, EVENT_QUEUE, wake_of};
-use crate::component::{Inbox, PortEnd, SafeDatum};
+use crate::assembly::{Assembly, AssemblyProblem};
+use crate::component::PortEnd;
 use crate::lane::SETUP_TOKEN;
 use crate::library::PortDescription;
-use crate::port::{Receiver, Sender, connection, mailbox};
 use crate::supervision::Orders;
-use crate::wake::Wake;
 
 /// What a tree is bound to.
 pub struct Ground<'a> {
@@ -42,11 +40,16 @@ pub struct Ground<'a> {
     pub reach: Arc<Reach>,
     /// The ways to input ports that trees send to.
     pub outlets: &'a Outlets,
+    /// Who calls services.
+    pub calls: &'a Arc<Calls>,
 }
 
 /// The ways to input ports that trees send to, by component and port.
 #[derive(Default)]
-pub struct Outlets(RefCell<HashMap<(usize, usize), Arc<Mutex<Outlet>>>>);
+pub struct Outlets(RefCell<HashMap<(usize, usize), Shared>>);
+
+/// The way to one of them.
+type Shared = Arc<Mutex<Outlet>>;
 
 /// A tree with its leaves.
 ///
@@ -139,9 +142,8 @@ impl Seat<'_> {
             }
             Kind::EvaluateDeviation => Box::new(Deviation(self.watched(component, true)?)),
             Kind::Estimate => Box::new(Estimate { reach, component }),
-            Kind::CallService | Kind::RaiseFault => {
-                return Err(self.unknown("node", id));
-            }
+            Kind::CallService => Box::new(self.called(component)?),
+            Kind::RaiseFault => return Err(self.unknown("node", id)),
         })
     }
 
@@ -221,115 +223,6 @@ impl Seat<'_> {
                 "WritePort needs an input that nothing else is connected to".to_owned(),
             )
         })
-    }
-
-    /// A connection of its own to an output port; `reads`: the field that the node names.
-    fn watched(&self, component: usize, reads: bool) -> Result<Watched, Misfit> {
-        let (index, port) = self.port(component)?;
-        let data_type = self.data_type(port)?;
-        let field = self.word("field");
-        let reader = match (reads, &field) {
-            (true, Some(field)) => Some(
-                NumberReader::compile(data_type, Some(field), 0)
-                    .map_err(|error| self.no_field(&error.to_string()))?,
-            ),
-            _ => None,
-        };
-        let (sender, receiver): (Sender, Receiver) =
-            connection(QueuePolicy::Last, 1, data_type.size);
-        self.with_end(component, index, |end| match end {
-            PortEnd::DataOutput(output) => {
-                output.connections.push((sender, None));
-                Some(())
-            }
-            _ => None,
-        })?;
-        Ok(Watched::new(receiver, reader))
-    }
-
-    fn written(&self, component: usize) -> Result<WritePort, Misfit> {
-        let (index, port) = self.port(component)?;
-        let data_type = self.data_type(port)?;
-        let safe = SafeValue {
-            field: self.word("field"),
-            value: 0.0,
-        };
-        let datum = SafeDatum::new(data_type, [&safe])
-            .map_err(|field| self.no_field(&format!("no field `{field}`")))?;
-        Ok(WritePort {
-            reach: Arc::clone(&self.ground.reach),
-            outlet: self.outlet(component, index, data_type.size)?,
-            datum,
-        })
-    }
-
-    /// The way to an input port; all nodes that write there share it.
-    fn outlet(
-        &self,
-        component: usize,
-        port: usize,
-        size: usize,
-    ) -> Result<Arc<Mutex<Outlet>>, Misfit> {
-        let mut outlets = self.ground.outlets.0.borrow_mut();
-        if let Some(outlet) = outlets.get(&(component, port)) {
-            return Ok(Arc::clone(outlet));
-        }
-        let (sender, receiver) = connection(QueuePolicy::Last, 1, size);
-        self.with_end(component, port, |end| match end {
-            PortEnd::DataInput(input) if input.source.is_none() => {
-                input.source = Some(receiver);
-                Some(())
-            }
-            _ => None,
-        })?;
-        let (wake, kind) = self.wake(component);
-        let wake = (kind == ExecutionKind::Aperiodic).then_some(wake);
-        let outlet = Arc::new(Mutex::new(Outlet::new(sender, size, wake)));
-        outlets.insert((component, port), Arc::clone(&outlet));
-        Ok(outlet)
-    }
-
-    fn awaited_event(&self, component: usize) -> Result<WaitForEvent, Misfit> {
-        let (index, port) = self.port(component)?;
-        let size = port.data_type.as_ref().map_or(0, |it| it.size);
-        let (sender, messages) = mailbox(EVENT_QUEUE, size);
-        self.with_end(component, index, |end| match end {
-            PortEnd::EventOutput(output) => {
-                output.connections.push((sender, Arc::default()));
-                Some(())
-            }
-            _ => None,
-        })?;
-        Ok(WaitForEvent::new(messages))
-    }
-
-    fn raised_event(&self, component: usize) -> Result<RaiseEvent, Misfit> {
-        let (index, port) = self.port(component)?;
-        let size = port.data_type.as_ref().map_or(0, |it| it.size);
-        let (sender, messages) = mailbox(EVENT_QUEUE, size);
-        let cell = self.ground.assembly.components.get(component);
-        if let Some(mut component) = cell.and_then(|it| it.enter(SETUP_TOKEN, Duration::ZERO)) {
-            component.services_mut().add_inbox(Inbox {
-                port: u32::try_from(index).unwrap_or(u32::MAX),
-                method: None,
-                messages,
-                in_work: None,
-                deaths: 0,
-            });
-        }
-        let (wake, _) = self.wake(component);
-        Ok(RaiseEvent {
-            reach: Arc::clone(&self.ground.reach),
-            sender,
-            wake,
-        })
-    }
-
-    /// What wakes a component's executor.
-    fn wake(&self, component: usize) -> (Arc<Wake>, ExecutionKind) {
-        let found = wake_of(&self.ground.assembly.executors, component);
-        // Every component is in an executor.
-        found.unwrap_or_else(|| (Arc::default(), ExecutionKind::Passive))
     }
 
     fn data_type<'port>(&self, port: &'port PortDescription) -> Result<&'port DataType, Misfit> {

@@ -6,6 +6,7 @@ pub(super) mod evaluation;
 pub(super) mod faults;
 pub(super) mod messages;
 pub(super) mod running;
+pub(super) mod service;
 pub(super) mod states;
 
 use std::time::Duration;

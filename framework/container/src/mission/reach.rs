@@ -146,7 +146,8 @@ impl Reach {
                 self.condition(*component),
                 Condition::Stopped | Condition::Destroyed | Condition::Lost
             );
-            !is_down && !(is_due(*until) && self.order(*component, OperatorOrder::Stop).is_ok())
+            let is_stopped = || self.order(*component, OperatorOrder::Stop).is_ok();
+            !is_down && (!is_due(*until) || !is_stopped())
         });
     }
 

@@ -1,12 +1,13 @@
 //! One tree at work: when it is ticked, what it is ordered, and what becomes of a tick that fails.
 
+mod ticking;
+
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use behavior_tree::{NodeId, Status, TickError, Tree};
+use behavior_tree::{NodeId, Status, Tree};
 use fault_manager::{ActionId, ActionOutcome, Observation};
-use system_model::fault::FaultKind;
 use system_model::mission::{DeclaredTree, TreeStart};
 
 use super::reach::Reach;
@@ -16,11 +17,7 @@ use crate::clock::nanoseconds;
 use crate::component::Environment;
 use crate::event_log::Event;
 use crate::supervision::{Order, Orders, Task};
-
-/// How often a tree may ask to be ticked again at once within one tick: a loop whose child completes
-/// at once does so after each cycle. One that does it for ever is a fault; so many cycles take a
-/// millisecond.
-const MOST_ROUNDS: u32 = 1_000;
+use ticking::{Mishap, overrun, words};
 
 /// What a tree is made of.
 pub struct Setting {
@@ -49,14 +46,8 @@ pub struct Runner {
     due_ns: u64,
     /// How often it has begun.
     incarnation: u32,
-    /// The action that it was begun for, by a fault rule.
-    handles: Option<ActionId>,
-}
-
-/// How a tick ended that did not end well.
-struct Mishap {
-    kind: FaultKind,
-    message: String,
+    /// The action that it was begun for, by a fault rule, and when it must have ended.
+    handles: Option<(ActionId, u64)>,
 }
 
 impl Runner {
@@ -118,6 +109,11 @@ impl Runner {
         if self.due_ns().is_none_or(|due_ns| due_ns > now_ns) {
             return;
         }
+        if self.handles.is_some_and(|(_, until_ns)| until_ns <= now_ns) {
+            self.halt();
+            self.end(Phase::Failure);
+            return self.put_on_record();
+        }
         let period_ns = nanoseconds(self.declared.tick);
         // A tick that comes late does not make the next ones hurry.
         self.due_ns = (self.due_ns + period_ns).max(now_ns + 1);
@@ -152,45 +148,18 @@ impl Runner {
         }
     }
 
-    /// A tick, and further ones for as long as the tree asks for them at once.
-    fn rounds(&mut self, now: Duration, began: Instant) -> Result<Status, Mishap> {
-        for _ in 0..MOST_ROUNDS {
-            let tree = &mut self.tree;
-            let mut nobody = |_: NodeId, _: Status, _: Status| {};
-            let ticked = catch_unwind(AssertUnwindSafe(|| tree.tick(now, &mut nobody)));
-            match ticked {
-                Err(panic) => {
-                    self.tree.abandon();
-                    return Err(Mishap {
-                        kind: FaultKind::Panic,
-                        message: words(panic.as_ref()),
-                    });
-                }
-                Ok(Err(TickError { path, message })) => {
-                    return Err(Mishap {
-                        kind: FaultKind::TreeError,
-                        message: format!("{path}: {message}"),
-                    });
-                }
-                Ok(Ok(status)) if status != Status::Running || !self.tree.is_woken() => {
-                    return Ok(status);
-                }
-                Ok(Ok(_)) => {}
-            }
-            let took = began.elapsed();
-            if !self.environment.clock.is_simulated() && took > self.declared.tick_deadline {
-                return Err(overrun(took, &self.declared));
-            }
-        }
-        Err(Mishap {
-            kind: FaultKind::TickOverrun,
-            message: format!("one tick went through its loops {MOST_ROUNDS} times"),
-        })
-    }
-
     fn carry_out(&mut self, order: &Order) {
         let before = self.phase;
         match &order.task {
+            Task::Handle { .. } if before == Phase::Running => {
+                let busy = Err("it is handling another fault".to_owned());
+                return self.report_end(order.action, busy);
+            }
+            Task::Handle { until_ns } => {
+                self.incarnation += 1;
+                // Its end is that of the order.
+                return self.start(order.action.map(|action| (action, *until_ns)));
+            }
             Task::Reset { .. } => {
                 self.halt();
                 self.incarnation += 1;
@@ -209,7 +178,7 @@ impl Runner {
         self.report_end(order.action, Ok(note));
     }
 
-    fn start(&mut self, handles: Option<ActionId>) {
+    fn start(&mut self, handles: Option<(ActionId, u64)>) {
         self.handles = handles;
         self.due_ns = self.environment.clock.now_ns();
         self.set_phase(Phase::Running);
@@ -254,7 +223,7 @@ impl Runner {
 
     /// Tells the fault rule that the tree was begun for how it has ended.
     fn answer_handling(&mut self, result: Result<String, String>) {
-        if let Some(action) = self.handles.take() {
+        if let Some((action, _)) = self.handles.take() {
             self.report_end(Some(action), result);
         }
     }
@@ -303,23 +272,4 @@ impl Runner {
         let now_ns = self.environment.clock.now_ns();
         self.environment.events.record(now_ns, event);
     }
-}
-
-fn overrun(took: Duration, declared: &DeclaredTree) -> Mishap {
-    let milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
-    Mishap {
-        kind: FaultKind::TickOverrun,
-        message: format!(
-            "a tick took {:.1} ms, and may take {} ms",
-            milliseconds(took),
-            milliseconds(declared.tick_deadline)
-        ),
-    }
-}
-
-/// What a panic says.
-fn words(panic: &(dyn std::any::Any + Send)) -> String {
-    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
-    let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
-    text.unwrap_or_else(|| "a panic without words".to_owned())
 }

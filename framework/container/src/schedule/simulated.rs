@@ -15,7 +15,7 @@ use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::guard::loss::LostThread;
 use crate::lane::{Lane, Work};
-use crate::mission::Runner;
+use crate::mission::{Calls, Runner};
 use crate::replay::Score;
 use crate::supervision::Supervisor;
 use crate::world::World;
@@ -59,6 +59,8 @@ pub struct Simulated {
     /// Behaviour trees, and whether they have been told that all has been started.
     trees: Vec<Runner>,
     trees_begun: bool,
+    /// What they ask of services.
+    calls: Arc<Calls>,
     /// The recording that is played, and for each executor whether all its components are.
     played: Option<(Arc<Score>, Vec<bool>)>,
 }
@@ -91,6 +93,7 @@ impl Simulated {
             obeying: None,
             trees: Vec::new(),
             trees_begun: false,
+            calls: Arc::default(),
             environment,
             supervisor,
             world,
@@ -166,7 +169,7 @@ impl Simulated {
     fn serve(&mut self, lane: &Lane) {
         self.supervisor.attend();
         self.serve_executors(lane);
-        while self.obey_in_trees() {
+        while self.obey_in_trees() || self.call_for_trees(lane) {
             self.serve_executors(lane);
         }
     }

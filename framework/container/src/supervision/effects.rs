@@ -55,6 +55,12 @@ impl Supervisor {
                     checkpoint_before_ns: checkpoint_before.map(nanoseconds),
                 },
             ),
+            Action::Handle { tree, within, .. } => {
+                let task = Task::Handle {
+                    until_ns: now_ns.saturating_add(nanoseconds(*within)),
+                };
+                (*tree, task)
+            }
             Action::Stop { component } => (*component, Task::Stop),
             Action::Destroy { component } => (*component, Task::Destroy),
         };

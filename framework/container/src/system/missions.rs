@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
+use super::StartError;
 use super::applications::{Applications, Part};
-use crate::assembly::{Assembly, AssemblyProblem};
-use crate::mission::{Ground, Outlets, Reach, Runner, bind};
+use crate::assembly::Assembly;
+use crate::mission::{Calls, Ground, Outlets, Reach, Runner, bind};
 use crate::supervision::Supervisor;
 
-/// The trees, in the order in which the fault manager counts them behind all components. In a
+/// The trees, in the order in which the fault manager counts them behind all components, and what they
+/// will ask of services. In a
 /// recording that is played nothing is ordered, so there are none.
 ///
 /// # Errors
@@ -16,9 +18,10 @@ pub(super) fn bind_all(
     applications: &Applications,
     assembly: &Assembly,
     supervisor: &Arc<Supervisor>,
-) -> Result<Vec<Runner>, Vec<AssemblyProblem>> {
+) -> Result<(Vec<Runner>, Arc<Calls>), StartError> {
+    let calls = Arc::default();
     if supervisor.environment().score.is_some() {
-        return Ok(Vec::new());
+        return Ok((Vec::new(), calls));
     }
     let several = applications.parts.len() > 1;
     let (mut runners, mut problems) = (Vec::new(), Vec::new());
@@ -35,6 +38,7 @@ pub(super) fn bind_all(
                 rules: &applications.rules.components,
                 reach: Arc::new(Reach::new(Arc::clone(supervisor), name, number)),
                 outlets: &outlets,
+                calls: &calls,
             };
             let orders = supervisor.orders_of(number);
             match bind(declared, Arc::clone(plan), orders, &ground) {
@@ -45,8 +49,8 @@ pub(super) fn bind_all(
         }
     }
     match problems.is_empty() {
-        true => Ok(runners),
-        false => Err(problems),
+        true => Ok((runners, calls)),
+        false => Err(StartError::Assembly(problems)),
     }
 }
 

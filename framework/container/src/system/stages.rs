@@ -16,7 +16,7 @@ use super::{BRING_UP_LIMIT, ClockKind, STOP_LIMIT, StartError, System};
 use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::lane::{Lane, SETUP_TOKEN, remaining};
-use crate::mission::Runner;
+use crate::mission::{Caller, Runner};
 use crate::schedule::{RealTime, Simulated};
 
 impl System {
@@ -200,7 +200,7 @@ impl System {
                     self.world.clone(),
                     self.options.duration,
                 )
-                .with_trees(runners);
+                .with_trees(runners, Arc::clone(&self.calls));
                 let lane = Lane::new("simulated", Box::new(work));
                 self.crew.start(&lane, || {})?;
                 let members = (0..self.components.len()).collect();
@@ -229,12 +229,25 @@ impl System {
                 for executor in executors {
                     self.launch_executor(executor)?;
                 }
+                if self.calls.is_used() {
+                    self.launch_caller()?;
+                }
                 for runner in runners {
                     let environment = Arc::clone(&self.environment);
                     self.mission_threads.start(runner, environment)?;
                 }
             }
         }
+        Ok(())
+    }
+
+    fn launch_caller(&mut self) -> Result<(), StartError> {
+        let calls = Arc::clone(&self.calls);
+        let environment = Arc::clone(&self.environment);
+        let work = Caller::new(calls, Arc::clone(&self.components), environment);
+        let lane = Lane::new("tree calls", Box::new(work));
+        self.crew.start(&lane, || {})?;
+        self.lanes.push((lane, Vec::new()));
         Ok(())
     }
 

@@ -51,8 +51,6 @@ pub(super) fn describe(event: &Event) -> Option<String> {
             "{component}: a datum of '{port}' is set aside, two incarnations died with it in work"
         ),
         Event::TreeState { tree, from, to } => format!("tree {tree}: {from} -> {to}"),
-        // Every tick may change some; the record has them.
-        Event::TreeNodes { .. } => return None,
         Event::CheckpointRestored {
             component,
             sequence,
@@ -70,7 +68,7 @@ pub(super) fn describe(event: &Event) -> Option<String> {
             level,
             message,
         } if *level != "debug" => format!("{component}: {level}: {message}"),
-        Event::Log { .. } | Event::RunStopped { .. } => return None,
+        Event::Log { .. } | Event::TreeNodes { .. } | Event::RunStopped { .. } => return None,
         Event::Notice { message } => format!("notice: {message}"),
         Event::ContainerRestarted(restart) => restarted(restart),
         Event::ContainerGivenUp { seen, .. } => format!("the container is given up: {seen}"),

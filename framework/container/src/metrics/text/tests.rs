@@ -43,6 +43,7 @@ fn view() -> SystemView {
             symptoms_dropped: 0,
         },
         components: BTreeMap::from([("camera".to_owned(), camera)]),
+        trees: BTreeMap::new(),
     }
 }
 

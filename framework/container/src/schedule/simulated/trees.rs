@@ -1,14 +1,29 @@
 //! Behaviour trees in simulated time: ticked between the executors' cycles, before those of the same
 //! time. A tick takes none.
 
+use std::sync::Arc;
+
 use super::Simulated;
-use crate::mission::Runner;
+use crate::lane::Lane;
+use crate::mission::{Calls, Runner};
 
 impl Simulated {
-    /// With these behaviour trees.
+    /// With these behaviour trees, and what they ask of services.
     #[must_use]
-    pub fn with_trees(self, trees: Vec<Runner>) -> Self {
-        Self { trees, ..self }
+    pub fn with_trees(self, trees: Vec<Runner>, calls: Arc<Calls>) -> Self {
+        Self {
+            trees,
+            calls,
+            ..self
+        }
+    }
+
+    /// Makes the calls that trees have asked for; whether there were any.
+    pub(super) fn call_for_trees(&mut self, lane: &Lane) -> bool {
+        let now_ns = self.environment.clock.now_ns();
+        let any = self.calls.make_all(now_ns, lane);
+        self.supervisor.attend();
+        any
     }
 
     /// Lets trees begin, once.

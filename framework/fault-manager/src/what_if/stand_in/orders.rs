@@ -36,6 +36,8 @@ impl StandIn<'_> {
                 secondary,
                 ..
             } => (component, Task::Replace(secondary)),
+            // What a tree comes to nobody can know; supposed is that it does what it is for.
+            Action::Handle { component, .. } => (component, Task::Reset),
             Action::Stop { component } => (component, Task::Stop),
             Action::Destroy { component } => (component, Task::Destroy),
             Action::EmergencyStop => return self.stop_in_emergency(planned.id),

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use system_model::profile::Located;
 use system_model::rules::{
-    ActuatorRule, DEFAULT_PERSISTED_MAX_AGE, FaultRule, MAX_RETRY_MAX, PortChecks, Preload,
-    RecoveryRule, ResurrectRule, StopCategory,
+    ActuatorRule, DEFAULT_HANDLE_DEADLINE, DEFAULT_PERSISTED_MAX_AGE, FaultRule, HandleRule,
+    MAX_RETRY_MAX, PortChecks, Preload, RecoveryRule, ResurrectRule, StopCategory,
 };
 
 use super::declared::DeclaredSecondary;
@@ -220,4 +220,18 @@ pub(super) fn reference(node: &Node<'_>, name: &'static str) -> Option<Located<S
     let reference = text(&node, "reference").or_else(|| Some(node.text().as_str().to_owned()));
     node.finish();
     reference.map(|reference| located(&node, reference))
+}
+
+/// `handle`: the tree that handles the fault.
+pub(super) fn handle(node: &Node<'_>) -> Option<Located<HandleRule>> {
+    let node = node.child("handle")?;
+    let tree = node.required_attribute("tree");
+    let deadline = node.attribute("deadline");
+    let deadline = deadline.map(|value| positive_duration(&value));
+    node.finish();
+    let rule = HandleRule {
+        tree: tree?.as_str().to_owned(),
+        deadline: deadline.unwrap_or(Some(DEFAULT_HANDLE_DEADLINE))?,
+    };
+    Some(located(&node, rule))
 }

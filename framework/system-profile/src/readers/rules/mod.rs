@@ -117,7 +117,7 @@ pub(crate) fn component_elements(node: &Node<'_>, name: &Located<String>) -> Dec
         actuator,
         isolation: isolation::isolation(node),
         adapt: handling::reference(node, "adapt"),
-        handle: handling::reference(node, "handle"),
+        handle: handling::handle(node),
     };
     // Evaluators and estimators belong to the task adaptation, which reads them itself.
     node.pass_over(&["evaluator", "estimator"]);
