@@ -153,6 +153,11 @@ impl Seat<'_> {
         value.map(Value::to_string)
     }
 
+    /// Whether the file says anything at a port.
+    fn says(&self, port: &str) -> bool {
+        self.plan.initial(self.node, port).is_some() || self.plan.is_entry(self.node, port)
+    }
+
     fn unknown(&self, what: &str, name: &str) -> Misfit {
         let path = &self.plan.describe(self.node).path;
         (

@@ -129,16 +129,17 @@ impl Seat<'_> {
             .find(|(_, method)| method.name == name)
             .ok_or_else(|| self.unknown("method", &name))?;
         let request = method.request.as_ref().map(|data_type| {
-            let value = self.word("field").map(|field| SafeValue {
-                field: Some(field),
+            // Without a field every number of the request has the value.
+            let value = self.says("value").then(|| SafeValue {
+                field: self.word("field"),
                 value: 0.0,
             });
             SafeDatum::new(data_type, &value)
                 .map_err(|field| self.no_field(&format!("no field `{field}`")))
         });
-        let reply = match (&method.reply, self.word("reply_field")) {
-            (Some(data_type), Some(field)) => Some(
-                NumberReader::compile(data_type, Some(&field), 0)
+        let reply = match &method.reply {
+            Some(data_type) if self.says("reply") => Some(
+                NumberReader::compile(data_type, self.word("reply_field").as_deref(), 0)
                     .map_err(|error| self.no_field(&error.to_string()))?,
             ),
             _ => None,
