@@ -40,5 +40,6 @@ mod supervised;
 mod tidy;
 mod trees;
 mod two_cameras;
+mod visual_servoing;
 mod what_if;
 mod workbench;
