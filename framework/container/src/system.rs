@@ -3,6 +3,7 @@
 mod agenda;
 mod applications;
 mod knowledge;
+mod missions;
 mod options;
 mod outcome;
 mod persistence;
@@ -25,6 +26,7 @@ use crate::component::{ComponentCell, Environment};
 use crate::event_log::{Event, EventWriter};
 use crate::lane::{Crew, Lane, remaining};
 use crate::library::PortDescription;
+use crate::mission::{MissionThreads, Runner, TreeStatus};
 use crate::recording::RecordingThread;
 use crate::status::{ComponentStatus, Meter};
 use crate::summary::Summary;
@@ -70,6 +72,8 @@ pub struct System {
     left_behind: LeftBehind,
     supervisor: Arc<Supervisor>,
     manager_threads: ManagerThreads,
+    trees: Vec<Arc<TreeStatus>>,
+    mission_threads: MissionThreads,
     persistence: Persistence,
     writer: EventWriter,
     recording: Option<RecordingThread>,
@@ -111,6 +115,9 @@ impl System {
         inject(&injections, &assembly, &environment).map_err(StartError::Assembly)?;
         let (supervisor, wanted) =
             supervise(&applications, &assembly, &environment).map_err(StartError::Assembly)?;
+        let supervisor = Arc::new(supervisor);
+        let runners = missions::bind_all(&applications, &assembly, &supervisor)
+            .map_err(StartError::Assembly)?;
         recording::play(&applications, &assembly, &environment)?;
         recorder
             .iter_mut()
@@ -144,13 +151,15 @@ impl System {
             began,
             crew: Crew::new()?,
             lanes: Vec::new(),
-            supervisor: Arc::new(supervisor),
+            supervisor,
             manager_threads: ManagerThreads::default(),
+            trees: runners.iter().map(Runner::status).collect(),
+            mission_threads: MissionThreads::default(),
             persistence,
             writer,
             recording,
         };
-        system.begin(executors, wanted)
+        system.begin(executors, runners, wanted)
     }
 
     /// Why the run is over, if it is: waits at most `limit` for that. Rates and loads are counted
@@ -175,10 +184,16 @@ impl System {
         }
     }
 
+    /// The behaviour trees of all applications.
+    pub fn trees(&self) -> &[Arc<TreeStatus>] {
+        &self.trees
+    }
+
     /// Stops everything in order and says what the run came to.
     pub fn stop(mut self, reason: &'static str) -> (Summary, Option<std::io::Error>) {
         let mut summary = self.summary(reason);
         let deadline = Instant::now() + STOP_LIMIT;
+        self.mission_threads.stop(deadline);
         self.manager_threads.stop(&self.supervisor);
         for (lane, _) in &self.lanes {
             lane.stop();

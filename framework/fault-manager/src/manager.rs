@@ -109,7 +109,12 @@ impl FaultManager {
             } => self.works(component, incarnation),
             Observation::Clear(None) => self.clear_all(),
             Observation::Clear(Some(id)) => self.clear(id),
-            Observation::Ordered { component, order } => self.ordered(component, order),
+            Observation::Ordered { component, order } => self.ordered(component, order, None),
+            Observation::OrderedByTree {
+                tree,
+                component,
+                order,
+            } => self.ordered(component, order, Some(tree)),
             Observation::Tick => {}
         }
         self.elapse(|due| due <= before);
@@ -161,12 +166,24 @@ impl FaultManager {
 
     /// How many faults of a component are confirmed and not healed; orders of an operator are none.
     pub fn open_faults(&self, component: usize) -> usize {
-        let confirmed = |fault: &&Fault| {
+        self.present_faults(component, None).count()
+    }
+
+    /// The faults of a component, of a kind if one is named, that are confirmed and not healed; orders
+    /// are none.
+    pub fn present_faults<'a>(
+        &'a self,
+        component: usize,
+        kind: Option<&'a str>,
+    ) -> impl Iterator<Item = FaultId> + 'a {
+        let is_present = move |fault: &&Fault| {
             fault.component == component
                 && fault.verdict.state == FaultState::Confirmed
                 && fault.kind != FaultKind::OperatorOrder
+                && kind.is_none_or(|kind| fault.verdict.kind == kind)
         };
-        self.history.open().filter(confirmed).count()
+        let open = self.history.open().filter(is_present);
+        open.map(|fault| fault.verdict.id)
     }
 
     /// The verdict on what an operator ordered last for a component, unless it has been forgotten.

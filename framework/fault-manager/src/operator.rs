@@ -63,7 +63,8 @@ impl FaultManager {
     }
 
     /// Carries an order out, unless it makes no sense any more: then nothing happens.
-    pub(crate) fn ordered(&mut self, component: usize, order: OperatorOrder) {
+    /// `by`: the index of the behaviour tree that orders it; none for an operator.
+    pub(crate) fn ordered(&mut self, component: usize, order: OperatorOrder, by: Option<usize>) {
         if self.refusal(component, order).is_some() {
             return;
         }
@@ -82,7 +83,7 @@ impl FaultManager {
             },
         };
         let sentence = wording::action(&self.system, &action);
-        let Some(id) = self.open_order(component, &action, &sentence) else {
+        let Some(id) = self.open_order(component, &action, &sentence, by) else {
             return;
         };
         match action {
@@ -114,7 +115,13 @@ impl FaultManager {
     }
 
     /// Puts an order on record: a fault in nothing but that somebody wants something done.
-    fn open_order(&mut self, component: usize, action: &Action, words: &str) -> Option<FaultId> {
+    fn open_order(
+        &mut self,
+        component: usize,
+        action: &Action,
+        words: &str,
+        by: Option<usize>,
+    ) -> Option<FaultId> {
         let detector = self.detectors.find(component, &DetectorKind::Exception)?;
         let severity = match action {
             Action::Stop { .. } => ComponentSeverity::Stop,
@@ -140,6 +147,7 @@ impl FaultManager {
             runs: true,
             evidence: Evidence::Order {
                 order: words.to_owned(),
+                by: by.map(|tree| self.system.components[tree].name.clone()),
             },
         };
         let id = self.history.number();

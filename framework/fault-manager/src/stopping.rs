@@ -31,7 +31,8 @@ impl FaultManager {
             }
             Reach::Application(application) => {
                 let stopped = &self.system.applications[application];
-                chosen.extend(stopped.members.clone().filter(|member| {
+                let members = stopped.members.clone().chain(stopped.trees.clone());
+                chosen.extend(members.filter(|member| {
                     let down = self.components[*member].down;
                     down.is_none_or(|down| down.condition == Condition::Lost)
                 }));

@@ -1,6 +1,7 @@
 //! All executors on one thread, in simulated time.
 
 mod playing;
+mod trees;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -14,6 +15,7 @@ use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::guard::loss::LostThread;
 use crate::lane::{Lane, Work};
+use crate::mission::Runner;
 use crate::replay::Score;
 use crate::supervision::Supervisor;
 use crate::world::World;
@@ -54,6 +56,9 @@ pub struct Simulated {
     supervisor: Arc<Supervisor>,
     world: Option<Arc<World>>,
     end_ns: u64,
+    /// Behaviour trees, and whether they have been told that all has been started.
+    trees: Vec<Runner>,
+    trees_begun: bool,
     /// The recording that is played, and for each executor whether all its components are.
     played: Option<(Arc<Score>, Vec<bool>)>,
 }
@@ -84,6 +89,8 @@ impl Simulated {
             components,
             running: None,
             obeying: None,
+            trees: Vec::new(),
+            trees_begun: false,
             environment,
             supervisor,
             world,
@@ -158,6 +165,13 @@ impl Simulated {
     /// Lets the fault manager see what happened, and does at once what it asks.
     fn serve(&mut self, lane: &Lane) {
         self.supervisor.attend();
+        self.serve_executors(lane);
+        while self.obey_in_trees() {
+            self.serve_executors(lane);
+        }
+    }
+
+    fn serve_executors(&mut self, lane: &Lane) {
         while let Some(index) = (self.executors.iter()).position(|one| !one.orders.is_empty()) {
             self.obeying = Some(index);
             self.executors[index].obey(&self.supervisor, lane);
@@ -194,11 +208,13 @@ impl Work for Simulated {
             if lane.is_stopping() {
                 return;
             }
+            self.begin_trees();
             self.serve(lane);
             let next = self.next();
             // What time brings comes before what is executed at that time.
             let tick_ns = self.supervisor.due_ns();
             if let Some(tick_ns) = tick_ns
+                && self.tree_due_ns().is_none_or(|due_ns| tick_ns <= due_ns)
                 && next.is_none_or(|(time_ns, _)| tick_ns <= time_ns)
                 && self.cue_ns().is_none_or(|cue_ns| tick_ns <= cue_ns)
                 && !self.is_over(next.map(|(time_ns, _)| time_ns))
@@ -207,6 +223,15 @@ impl Work for Simulated {
                     return;
                 }
                 self.supervisor.tick();
+                continue;
+            }
+            if let Some(due_ns) = self.tree_due_ns()
+                && next.is_none_or(|(time_ns, _)| due_ns <= time_ns)
+            {
+                if due_ns > self.environment.clock.now_ns() && !self.advance(due_ns) {
+                    return;
+                }
+                self.tick_trees();
                 continue;
             }
             match self.play(next.map(|(time_ns, _)| time_ns), lane) {

@@ -16,6 +16,7 @@ use super::{BRING_UP_LIMIT, ClockKind, STOP_LIMIT, StartError, System};
 use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::lane::{Lane, SETUP_TOKEN, remaining};
+use crate::mission::Runner;
 use crate::schedule::{RealTime, Simulated};
 
 impl System {
@@ -23,6 +24,7 @@ impl System {
     pub(super) fn begin(
         mut self,
         executors: Vec<Executor>,
+        runners: Vec<Runner>,
         wanted: Receiver<usize>,
     ) -> Result<Self, StartError> {
         if let Err(error) = self.bring_up() {
@@ -30,7 +32,7 @@ impl System {
             let _log_error = self.close();
             return Err(error);
         }
-        if let Err(error) = self.launch(executors, wanted) {
+        if let Err(error) = self.launch(executors, runners, wanted) {
             // What is on the disk is for the next try.
             self.persistence = Persistence::default();
             let _nothing_to_sum_up = self.stop("start_refused");
@@ -185,6 +187,7 @@ impl System {
     fn launch(
         &mut self,
         executors: Vec<Executor>,
+        runners: Vec<Runner>,
         wanted: Receiver<usize>,
     ) -> Result<(), StartError> {
         self.environment.observations.report(Observation::Running);
@@ -196,7 +199,8 @@ impl System {
                     Arc::clone(&self.supervisor),
                     self.world.clone(),
                     self.options.duration,
-                );
+                )
+                .with_trees(runners);
                 let lane = Lane::new("simulated", Box::new(work));
                 self.crew.start(&lane, || {})?;
                 let members = (0..self.components.len()).collect();
@@ -224,6 +228,10 @@ impl System {
                 }
                 for executor in executors {
                     self.launch_executor(executor)?;
+                }
+                for runner in runners {
+                    let environment = Arc::clone(&self.environment);
+                    self.mission_threads.start(runner, environment)?;
                 }
             }
         }

@@ -58,6 +58,7 @@ pub fn application(name: &str, components: &[&str]) -> Scope {
             manager_connections: Vec::new(),
             coordination: Vec::new(),
             world: None,
+            trees: Vec::new(),
         },
         rules: FaultRules {
             application: name.to_owned(),

@@ -50,6 +50,9 @@ pub(super) fn describe(event: &Event) -> Option<String> {
         } => format!(
             "{component}: a datum of '{port}' is set aside, two incarnations died with it in work"
         ),
+        Event::TreeState { tree, from, to } => format!("tree {tree}: {from} -> {to}"),
+        // Every tick may change some; the record has them.
+        Event::TreeNodes { .. } => return None,
         Event::CheckpointRestored {
             component,
             sequence,

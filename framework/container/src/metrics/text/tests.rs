@@ -57,6 +57,7 @@ fn verdict(id: u64, kind: &'static str, handling_us: Option<u64>) -> Event {
         rule: None,
         evidence: Evidence::Order {
             order: String::new(),
+            by: None,
         },
         symptoms: 1,
         first_symptom_ns: 0,

@@ -23,6 +23,7 @@ pub(crate) use declared::{
     DeclaredMonitor, DeclaredName, DeclaredRules, DeclaredSecondary, DeclaredSource,
     DeclaredVoting, EntityKind,
 };
+pub(in crate::readers) use diagnosis::COMPONENT_SEVERITIES;
 
 /// The outermost element of a rule file.
 pub(crate) const RULES_ROOT: &str = "fault_rules";

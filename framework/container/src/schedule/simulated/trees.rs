@@ -1,0 +1,43 @@
+//! Behaviour trees in simulated time: ticked between the executors' cycles, before those of the same
+//! time. A tick takes none.
+
+use super::Simulated;
+use crate::mission::Runner;
+
+impl Simulated {
+    /// With these behaviour trees.
+    #[must_use]
+    pub fn with_trees(self, trees: Vec<Runner>) -> Self {
+        Self { trees, ..self }
+    }
+
+    /// Lets trees begin, once.
+    pub(super) fn begin_trees(&mut self) {
+        if !std::mem::replace(&mut self.trees_begun, true) {
+            self.trees.iter_mut().for_each(Runner::begin);
+        }
+    }
+
+    /// When the next tick is due.
+    pub(super) fn tree_due_ns(&self) -> Option<u64> {
+        let now_ns = self.environment.clock.now_ns();
+        let due = self.trees.iter().filter_map(Runner::due_ns).min();
+        due.map(|due_ns| due_ns.max(now_ns))
+    }
+
+    /// Ticks those that are due.
+    pub(super) fn tick_trees(&mut self) {
+        self.trees.iter_mut().for_each(Runner::tick);
+    }
+
+    /// One tree does what it is asked; whether any was asked.
+    pub(super) fn obey_in_trees(&mut self) -> bool {
+        let mut trees = self.trees.iter_mut();
+        let Some(tree) = trees.find(|tree| tree.has_orders()) else {
+            return false;
+        };
+        tree.obey();
+        self.supervisor.attend();
+        true
+    }
+}
