@@ -1,5 +1,6 @@
 //! Running applications: brought up in order, run, and stopped in order, each with a deadline.
 
+mod adaptation;
 mod agenda;
 mod applications;
 mod knowledge;
@@ -118,6 +119,9 @@ impl System {
         let recording = recorder
             .map(|it| recording::record(it, &applications, &assembly, &environment, &options));
         let recording = recording.transpose()?;
+        let meter = Arc::new(real_time::meter(&assembly.statuses, &assembly.executors));
+        let adaptations = adaptation::adapt(&applications, &assembly, &environment, &meter)
+            .map_err(StartError::Assembly)?;
         let persistence = Persistence::new(&applications, &assembly.factories);
         let Assembly {
             components,
@@ -127,7 +131,6 @@ impl System {
             links,
             ..
         } = assembly;
-        let meter = real_time::meter(&statuses, &executors);
         let system = Self {
             applications: applications.names(),
             specification: applications.specification,
@@ -139,7 +142,7 @@ impl System {
             components: components.into(),
             interfaces: interfaces.into(),
             statuses,
-            meter: Arc::new(meter),
+            meter,
             links: links.into(),
             began,
             crew: Crew::new()?,
@@ -150,7 +153,7 @@ impl System {
             writer,
             recording,
         };
-        system.begin(executors, wanted)
+        system.begin(executors, adaptations, wanted)
     }
 
     /// Why the run is over, if it is: waits at most `limit` for that. Rates and loads are counted

@@ -162,7 +162,7 @@ pub struct FaultView {
 /// wrong.
 pub fn level(state: LifeCycleState, condition: Condition, open_faults: usize) -> &'static str {
     match (condition, state) {
-        (Condition::Stopped | Condition::Destroyed, _) => "STALE",
+        (Condition::Stopped | Condition::Destroyed | Condition::Unneeded, _) => "STALE",
         (Condition::Lost, _) => "ERROR",
         (Condition::Recovering | Condition::Waiting, _) => "WARN",
         (Condition::Working, LifeCycleState::Error) => "ERROR",
@@ -181,6 +181,7 @@ pub fn condition_name(condition: Condition) -> &'static str {
         Condition::Stopped => "stopped",
         Condition::Destroyed => "destroyed",
         Condition::Lost => "lost",
+        Condition::Unneeded => "done without",
     }
 }
 

@@ -5,6 +5,7 @@ mod shift;
 
 use std::ops::Range;
 
+use crate::adaptation::AttachedTask;
 use system_model::injection::Injection;
 use system_model::process_model::ProcessModel;
 use system_model::profile::Located;
@@ -22,6 +23,8 @@ pub struct Application {
     pub models: Vec<(String, ProcessModel)>,
     /// Faults that are made on purpose.
     pub injections: Vec<Injection>,
+    /// The task that it is to do, and is watched over.
+    pub task: Option<AttachedTask>,
 }
 
 /// All applications together.
@@ -207,6 +210,7 @@ mod tests {
             },
             models: Vec::new(),
             injections: Vec::new(),
+            task: None,
         }
     }
 

@@ -13,6 +13,7 @@ use super::agenda::{Agenda, Failure, Step};
 use super::persistence::Persistence;
 use super::real_time::{self, WorldThread};
 use super::{BRING_UP_LIMIT, ClockKind, STOP_LIMIT, StartError, System};
+use crate::adaptation::{Adaptation, AdaptationLane};
 use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::lane::{Lane, SETUP_TOKEN, remaining};
@@ -23,6 +24,7 @@ impl System {
     pub(super) fn begin(
         mut self,
         executors: Vec<Executor>,
+        adaptations: Vec<Adaptation>,
         wanted: Receiver<usize>,
     ) -> Result<Self, StartError> {
         if let Err(error) = self.bring_up() {
@@ -30,7 +32,7 @@ impl System {
             let _log_error = self.close();
             return Err(error);
         }
-        if let Err(error) = self.launch(executors, wanted) {
+        if let Err(error) = self.launch(executors, adaptations, wanted) {
             // What is on the disk is for the next try.
             self.persistence = Persistence::default();
             let _nothing_to_sum_up = self.stop("start_refused");
@@ -185,6 +187,7 @@ impl System {
     fn launch(
         &mut self,
         executors: Vec<Executor>,
+        adaptations: Vec<Adaptation>,
         wanted: Receiver<usize>,
     ) -> Result<(), StartError> {
         self.environment.observations.report(Observation::Running);
@@ -192,6 +195,7 @@ impl System {
             ClockKind::Simulated => {
                 let work = Simulated::new(
                     executors,
+                    adaptations,
                     Arc::clone(&self.components),
                     Arc::clone(&self.supervisor),
                     self.world.clone(),
@@ -225,8 +229,22 @@ impl System {
                 for executor in executors {
                     self.launch_executor(executor)?;
                 }
+                for adaptation in adaptations {
+                    self.launch_adaptation(adaptation)?;
+                }
             }
         }
+        Ok(())
+    }
+
+    fn launch_adaptation(&mut self, adaptation: Adaptation) -> Result<(), StartError> {
+        let components = Arc::clone(&self.components);
+        let environment = Arc::clone(&self.environment);
+        let work = AdaptationLane::new(adaptation, components, environment);
+        let lane = Lane::new("adaptation", Box::new(work));
+        self.crew.start(&lane, || {})?;
+        // Components of its own it has none: those that it enters belong to their executors.
+        self.lanes.push((lane, Vec::new()));
         Ok(())
     }
 

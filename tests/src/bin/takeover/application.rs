@@ -183,6 +183,7 @@ fn load(folder: &Path, plan: &Plan) -> Application {
             .rules
             .unwrap_or_else(|| panic!("{:#?}", rules.problems)),
         models: Vec::new(),
+        task: None,
         injections: injected
             .injections
             .unwrap_or_else(|| panic!("{problems:#?}")),

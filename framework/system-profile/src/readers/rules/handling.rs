@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use system_model::profile::Located;
 use system_model::rules::{
-    ActuatorRule, DEFAULT_PERSISTED_MAX_AGE, FaultRule, MAX_RETRY_MAX, PortChecks, Preload,
-    RecoveryRule, ResurrectRule, StopCategory,
+    ActuatorRule, AdaptRule, DEFAULT_PERSISTED_MAX_AGE, FaultRule, MAX_RETRY_MAX, PortChecks,
+    Preload, RecoveryRule, ResurrectRule, StopCategory,
 };
 
 use super::declared::DeclaredSecondary;
@@ -220,4 +220,17 @@ pub(super) fn reference(node: &Node<'_>, name: &'static str) -> Option<Located<S
     let reference = text(&node, "reference").or_else(|| Some(node.text().as_str().to_owned()));
     node.finish();
     reference.map(|reference| located(&node, reference))
+}
+
+/// The task that is done in another way.
+pub(super) fn adapt(node: &Node<'_>) -> Option<Located<AdaptRule>> {
+    let node = node.child("adapt")?;
+    let task = node.required_attribute("task");
+    let robot = node.attribute("robot");
+    node.finish();
+    let rule = AdaptRule {
+        task: task?.as_str().to_owned(),
+        robot: robot.map(|robot| robot.as_str().to_owned()),
+    };
+    Some(located(&node, rule))
 }

@@ -147,6 +147,7 @@ pub(super) fn load(folder: &Path) -> io::Result<Application> {
         rules,
         models: Vec::new(),
         injections,
+        task: None,
     })
 }
 
