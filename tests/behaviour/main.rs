@@ -41,5 +41,6 @@ mod supervised;
 mod tidy;
 mod trees;
 mod two_cameras;
+mod visual_servoing;
 mod what_if;
 mod workbench;

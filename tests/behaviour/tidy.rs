@@ -11,7 +11,7 @@ use tests::{Watched, repository};
 
 /// Which crates of the workspace each crate of the framework may build on; development
 /// dependencies do not count. A new crate gets its place here.
-const FRAMEWORK: [(&str, &[&str]); 12] = [
+const FRAMEWORK: [(&str, &[&str]); 13] = [
     ("component-abi", &[]),
     ("component-sdk-derive", &[]),
     ("component-sdk", &["component-abi", "component-sdk-derive"]),
@@ -23,6 +23,7 @@ const FRAMEWORK: [(&str, &[&str]); 12] = [
     ("recording", &["system-model"]),
     ("robot-interface", &["component-sdk"]),
     ("robot-simulation", &["robot-interface", "system-model"]),
+    ("robot-vision", &[]),
     (
         "container",
         &[
@@ -39,10 +40,11 @@ const FRAMEWORK: [(&str, &[&str]); 12] = [
 ];
 
 /// What components may build on: the contract, and what they share with each other.
-const COMPONENTS: [&str; 4] = [
+const COMPONENTS: [&str; 5] = [
     "component-abi",
     "component-sdk",
     "robot-interface",
+    "robot-vision",
     "test-parts",
 ];
 

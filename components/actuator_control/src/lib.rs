@@ -4,15 +4,12 @@
 //! `decision_timeout_ms`: without a new decision for this long the robot is stopped.
 #![forbid(unsafe_code)]
 
-mod differential_drive;
-
 use std::time::Duration;
 
 use component_sdk::prelude::*;
+use robot_interface::differential_drive::DifferentialDrive;
 use robot_interface::port_data::{MotionDecision, MotorCommand};
 use robot_interface::serial_line::MotionCommand;
-
-use differential_drive::DifferentialDrive;
 
 /// Five cycles of the planner: one that is late is no reason to stop, one that is gone is.
 const DECISION_TIMEOUT_MS: u64 = 200;

@@ -4,16 +4,12 @@
 //! is at `/dev/ttyUSB0` or the like.
 #![forbid(unsafe_code)]
 
-mod board_line;
-
 use std::fs::File;
 use std::io;
 
 use component_sdk::prelude::*;
 use robot_interface::port_data::{EncoderTicks, MotorCommand, RangeReport};
-use robot_interface::serial_line::BoardReport;
-
-use board_line::BoardLine;
+use robot_interface::serial_line::{BoardLine, BoardReport};
 
 const METRES_PER_MILLIMETRE: f64 = 0.001;
 

@@ -11,4 +11,7 @@ mod vision;
 
 pub use board::{EncoderTicks, MotorCommand, Range, RangeReport, WheelOdometry};
 pub use navigation::{MotionDecision, ObstacleReport};
-pub use vision::{DetectedObject, IMAGE_HEIGHT, IMAGE_PIXEL_BYTES, IMAGE_WIDTH, Image};
+pub use vision::{
+    DetectedObject, IMAGE_HEIGHT, IMAGE_PIXEL_BYTES, IMAGE_WIDTH, Image, TrackedTarget,
+    TurnReference,
+};

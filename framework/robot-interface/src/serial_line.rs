@@ -11,10 +11,12 @@
 //! All numbers are little endian, as the AVR of the motion board stores them. A report is 25 bytes;
 //! fifty a second use a ninth of a line at 115,200 baud.
 
+mod board_line;
 mod decoder;
 mod frame;
 mod message;
 
+pub use board_line::BoardLine;
 pub use decoder::Decoder;
 pub use frame::{MAXIMUM_FRAME_LENGTH, encode};
 pub use message::{BoardReport, Message, MotionCommand, MotionType, SONAR_COUNT};

@@ -3,8 +3,8 @@
 use rand::RngExt;
 use rand_pcg::Pcg64;
 use system_model::world::{
-    ArenaSpecification, Colour, ObstacleShape, Position, RandomObstacleSpecification, TargetPlace,
-    WallSpecification, WorldSpecification,
+    ArenaSpecification, BandSpecification, Colour, ObstacleShape, Position,
+    RandomObstacleSpecification, TargetPlace, WallSpecification, WorldSpecification,
 };
 
 use crate::error::SimulationError;
@@ -52,6 +52,10 @@ pub struct Arena {
     pub solids: Vec<Solid>,
     /// Centre of the target.
     pub target: Position,
+    /// Bands around the target.
+    pub target_bands: Option<BandSpecification>,
+    /// Height of the outer walls in m.
+    pub wall_height_m: f64,
 }
 
 impl Arena {
@@ -70,6 +74,14 @@ impl Arena {
                 tries: ARENA_TRIES,
                 corridor_m,
             })
+    }
+
+    /// The target goes to another place; it is the last solid.
+    pub(crate) fn move_target(&mut self, to: Position) {
+        self.target = to;
+        if let Some(target) = self.solids.last_mut() {
+            target.outline.centre = to;
+        }
     }
 }
 
@@ -110,7 +122,12 @@ fn draw_once(world: &WorldSpecification, random: &mut Pcg64) -> Option<Arena> {
         height_m: world.target.height_m,
         colour: world.target.colour,
     });
-    Some(Arena { solids, target })
+    Some(Arena {
+        solids,
+        target,
+        target_bands: world.target.bands,
+        wall_height_m: world.arena.wall_height_m,
+    })
 }
 
 fn draw_target(place: TargetPlace, random: &mut Pcg64) -> Position {

@@ -5,11 +5,14 @@ use std::time::Duration;
 use rand::Rng;
 use rand_pcg::Pcg64;
 use robot_interface::camera_stream::Picture;
-use system_model::world::{CameraSpecification, Colour, Pose};
+use system_model::world::{
+    CameraSpecification, Colour, Pose, SmokeSpecification, WorldSpecification,
+};
 
-use crate::arena::{Arena, SolidKind};
+use crate::arena::{Arena, Solid, SolidKind};
 use crate::geometry::compose;
 use crate::physics::{Physics, RayHit};
+use crate::smoke::Light;
 
 const FLOOR: Colour = Colour {
     red: 92,
@@ -21,6 +24,7 @@ const CEILING: Colour = Colour {
     green: 180,
     blue: 184,
 };
+/// Of smoke right before the lens.
 const SMOKE: Colour = Colour {
     red: 128,
     green: 128,
@@ -33,36 +37,50 @@ const RANGE_M: f64 = 1000.0;
 /// Largest brightness noise of a pixel, of 255.
 const NOISE_MAXIMUM: i16 = 6;
 
-/// Takes a picture from a robot at `robot`.
+/// What lies between things and the picture of them.
+pub(crate) struct Air<'a> {
+    /// Smoke that fills the arena.
+    smoke: Option<&'a SmokeSpecification>,
+    /// Density of smoke right before the lens, 0 to 1.
+    density_at_lens: f64,
+}
+
+impl<'a> Air<'a> {
+    /// The air of a world, and smoke right before the lens of this density, 0 to 1.
+    pub(crate) fn new(world: &'a WorldSpecification, density_at_lens: f64) -> Self {
+        Self {
+            smoke: world.smoke.as_ref(),
+            density_at_lens,
+        }
+    }
+}
+
+/// Takes a picture at `now` from a robot at `robot`.
 pub(crate) fn take_picture(
-    arena: &Arena,
-    physics: &Physics,
+    (arena, physics): (&Arena, &Physics),
     camera: &CameraSpecification,
     robot: Pose,
-    smoke_density: f64,
+    air: &Air<'_>,
+    now: Duration,
     random: &mut Pcg64,
-) -> Vec<u8> {
+) -> Picture {
     let lens = compose(robot, camera.mount);
     let view = View::new(camera, arena);
-    let mut pixels = vec![0; usize::from(view.width) * usize::from(view.height) * 3];
+    let mut light = Light::none(usize::from(view.width) * usize::from(view.height));
     let mut hits = Vec::new();
     for column in 0..view.width {
         let angle_rad = view.angle_rad(column);
         let heading_rad = lens.heading_rad + angle_rad;
         physics.all_on_ray(lens.position, heading_rad, RANGE_M, &mut hits);
-        view.paint_column(&mut pixels, column, angle_rad, &hits);
+        view.paint_column(&mut light, column, angle_rad, &hits);
     }
-    finish(&mut pixels, smoke_density, random);
-    pixels
-}
-
-/// Frames the pixels as a picture.
-pub(crate) fn picture(camera: &CameraSpecification, now: Duration, pixels: Vec<u8>) -> Picture {
+    light.pass(air.smoke, now);
+    finish(&mut light.pixels, air.density_at_lens, random);
     Picture {
         width: camera.picture_width,
         height: camera.picture_height,
         time_stamp_ns: u64::try_from(now.as_nanos()).unwrap_or(u64::MAX),
-        pixels,
+        pixels: light.pixels,
     }
 }
 
@@ -95,26 +113,47 @@ impl<'a> View<'a> {
     }
 
     /// Background first, then the solids from far to near.
-    fn paint_column(&self, pixels: &mut [u8], column: u16, angle_rad: f64, hits: &[RayHit]) {
+    fn paint_column(&self, light: &mut Light, column: u16, angle_rad: f64, hits: &[RayHit]) {
         let horizon = self.height / 2;
-        self.fill(pixels, column, 0..horizon, CEILING);
-        for row in horizon..self.height {
-            let below = f64::from(row - horizon) + 0.5;
-            let depth_m = self.focal_length * self.lens_height_m / below;
-            self.fill(pixels, column, row..row + 1, shade(FLOOR, depth_m));
+        let ceiling_m = self.arena.wall_height_m - self.lens_height_m;
+        for row in 0..self.height {
+            let off_axis = self.off_axis(row);
+            let (colour, depth_m) = match row < horizon {
+                true => (CEILING, self.focal_length * ceiling_m.abs() / -off_axis),
+                false => {
+                    let depth_m = self.focal_length * self.lens_height_m / off_axis;
+                    (shade(FLOOR, depth_m), depth_m)
+                }
+            };
+            self.paint(light, column, row, colour, depth_m);
         }
         for hit in hits.iter().rev() {
             let solid = &self.arena.solids[hit.solid];
             let depth_m = hit.distance_m * libm::cos(angle_rad);
             let top = self.row(solid.height_m, depth_m);
             let bottom = self.row(0.0, depth_m);
-            let colour = match solid.kind {
-                // The target shines by itself, so that its colour does not depend on its place.
-                SolidKind::Target => solid.colour,
-                SolidKind::Wall | SolidKind::Obstacle => shade(solid.colour, hit.distance_m),
-            };
-            self.fill(pixels, column, top..bottom, colour);
+            for row in top..bottom {
+                let colour = match solid.kind {
+                    // The target shines by itself, so that its colour does not depend on its place.
+                    SolidKind::Target => self.colour_of_target(solid, row, depth_m),
+                    SolidKind::Wall | SolidKind::Obstacle => shade(solid.colour, hit.distance_m),
+                };
+                self.paint(light, column, row, colour, depth_m);
+            }
         }
+    }
+
+    fn colour_of_target(&self, target: &Solid, row: u16, depth_m: f64) -> Colour {
+        let height_m = self.lens_height_m - self.off_axis(row) * depth_m / self.focal_length;
+        match self.arena.target_bands {
+            Some(bands) if (height_m / bands.height_m).rem_euclid(2.0) >= 1.0 => bands.colour,
+            _ => target.colour,
+        }
+    }
+
+    /// Rows from the axis of the lens down to the middle of a row.
+    fn off_axis(&self, row: u16) -> f64 {
+        f64::from(row) + 0.5 - f64::from(self.height / 2)
     }
 
     /// The row in which a point at this height and depth appears.
@@ -124,11 +163,11 @@ impl<'a> View<'a> {
         row.round().clamp(0.0, f64::from(self.height)) as u16
     }
 
-    fn fill(&self, pixels: &mut [u8], column: u16, rows: std::ops::Range<u16>, colour: Colour) {
-        for row in rows {
-            let at = (usize::from(row) * usize::from(self.width) + usize::from(column)) * 3;
-            pixels[at..at + 3].copy_from_slice(&[colour.red, colour.green, colour.blue]);
-        }
+    fn paint(&self, light: &mut Light, column: u16, row: u16, colour: Colour, depth_m: f64) {
+        let across = f64::from(column) + 0.5 - f64::from(self.width) / 2.0;
+        let away = libm::hypot(across, self.off_axis(row)) / self.focal_length;
+        let pixel = usize::from(row) * usize::from(self.width) + usize::from(column);
+        light.set(pixel, colour, depth_m * libm::hypot(1.0, away));
     }
 }
 
@@ -142,7 +181,7 @@ fn shade(colour: Colour, distance_m: f64) -> Colour {
     }
 }
 
-/// Smoke in front of the lens, then the noise of the sensor behind it.
+/// Smoke right before the lens, then the noise of the sensor behind it.
 fn finish(pixels: &mut [u8], smoke_density: f64, random: &mut Pcg64) {
     let smoke = [SMOKE.red, SMOKE.green, SMOKE.blue];
     for pixel in pixels.chunks_exact_mut(3) {

@@ -24,7 +24,9 @@ mod physics;
 mod picture_of_drive;
 mod random;
 mod simulation;
+mod smoke;
 mod sonar;
+mod sway;
 
 pub use arena::{Arena, Solid, SolidKind};
 pub use commanded_drive::{CommandedDrive, CyclePhases, EncoderCounts, WheelCommand};

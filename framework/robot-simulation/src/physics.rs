@@ -102,6 +102,12 @@ impl Physics {
         self.world.step();
     }
 
+    /// Puts a solid of the arena elsewhere; rays meet it there after the next step.
+    pub(crate) fn move_solid(&mut self, solid: usize, to: Position) {
+        let collider = &mut self.world.colliders[self.solids[solid]];
+        collider.set_translation(Vector::new(to.x_m, to.y_m));
+    }
+
     /// Distances in m between the outlines of the robot and of each solid of the arena; 0 where
     /// they touch.
     pub(crate) fn distances_m(&self) -> impl Iterator<Item = f64> + '_ {

@@ -7,10 +7,10 @@ use std::time::Duration;
 
 use rand_pcg::Pcg64;
 use robot_interface::camera_stream;
-use system_model::world::{Pose, WorldSpecification};
+use system_model::world::{Pose, Position, WorldSpecification};
 
 use crate::arena::Arena;
-use crate::camera;
+use crate::camera::{self, Air};
 use crate::drive::Drive;
 use crate::drive_record::{DriveRecord, RobotSummary};
 use crate::error::SimulationError;
@@ -21,6 +21,7 @@ use crate::motion_board::{MotionBoard, REPORT_PERIOD};
 use crate::physics::Physics;
 use crate::random::{Purpose, stream};
 use crate::sonar::measure_m;
+use crate::sway;
 
 /// Name of the device that drives the robot: the motion board.
 pub const MOTION_BOARD: &str = "motion_board";
@@ -50,6 +51,8 @@ pub struct Simulation {
     board_line: Line,
     camera_line: Line,
     record: DriveRecord,
+    /// Where the target stands, or the middle of its sway.
+    target_place: Position,
     now: Duration,
 }
 
@@ -72,6 +75,7 @@ impl Simulation {
             board_line: Line::default(),
             camera_line: Line::default(),
             record: DriveRecord::new(world.robot.start, arena.solids.len()),
+            target_place: arena.target,
             now: Duration::ZERO,
             world: world.clone(),
             arena,
@@ -213,6 +217,7 @@ impl Simulation {
 
     fn step(&mut self) {
         let mut buffer = [0; RECEIVE_BUFFER_LENGTH];
+        self.sway_target();
         self.board
             .receive(self.board_line.receive(&mut buffer), self.now);
         let (left, right) = self.board.side_commands(&self.faults);
@@ -231,6 +236,14 @@ impl Simulation {
         }
         self.serve_camera();
         self.remember();
+    }
+
+    fn sway_target(&mut self) {
+        if let Some(sway) = self.world.target.sway {
+            let place = sway::place(sway, self.target_place, self.now + STEP);
+            self.arena.move_target(place);
+            self.physics.move_solid(self.arena.solids.len() - 1, place);
+        }
     }
 
     fn is_due(&self, period: Duration) -> bool {
@@ -258,15 +271,15 @@ impl Simulation {
         }
         self.pictures += 1;
         if self.camera_line.is_open() {
-            let pixels = camera::take_picture(
-                &self.arena,
-                &self.physics,
+            let air = Air::new(&self.world, self.faults.smoke_density());
+            let picture = camera::take_picture(
+                (&self.arena, &self.physics),
                 &self.world.camera,
                 self.physics.pose(),
-                self.faults.smoke_density(),
+                &air,
+                self.now,
                 &mut self.camera_noise,
             );
-            let picture = camera::picture(&self.world.camera, self.now, pixels);
             self.camera_line.send(&camera_stream::encode(&picture));
         }
     }

@@ -19,6 +19,8 @@ pub struct WorldSpecification {
     pub random_obstacles: Option<RandomObstacleSpecification>,
     /// What the robot looks for.
     pub target: TargetSpecification,
+    /// Smoke that blows in during a run.
+    pub smoke: Option<SmokeSpecification>,
     /// The robot.
     pub robot: RobotSpecification,
     /// The ultrasonic sensors in the order in which the motion board reports them.
@@ -150,8 +152,42 @@ pub struct TargetSpecification {
     pub height_m: f64,
     /// Colour, better saturated: everything else is dull.
     pub colour: Colour,
+    /// Level bands of a second colour.
+    pub bands: Option<BandSpecification>,
+    /// How it moves, if it does.
+    pub sway: Option<SwaySpecification>,
     /// The target is reached when the gap between the outlines of robot and target is at most this.
     pub reach_distance_m: f64,
+}
+
+/// Level bands around the target, which look the same from all sides.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BandSpecification {
+    /// Height of each band and of each gap between two; the lowest stretch has the target's colour.
+    pub height_m: f64,
+    /// Colour of the bands.
+    pub colour: Colour,
+}
+
+/// A target that sways to and fro along y around its place, as a sine of time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SwaySpecification {
+    /// Farthest from its place.
+    pub amplitude_m: f64,
+    /// Time to and fro.
+    pub period_s: f64,
+}
+
+/// Smoke that fills the arena evenly: the standard model of a scattering atmosphere, `I = J t +
+/// A (1 - t)` with `t = exp(-beta d)`, for what a camera sees at the distance `d`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SmokeSpecification {
+    /// Time of the run from which it is there.
+    pub begins_s: f64,
+    /// Scattering coefficient beta.
+    pub scattering_per_m: f64,
+    /// The light that the smoke itself scatters into the lens, A.
+    pub airlight: Colour,
 }
 
 /// Where the target stands.
@@ -243,6 +279,7 @@ impl Default for WorldSpecification {
             obstacles: Vec::new(),
             random_obstacles: Some(RandomObstacleSpecification::default()),
             target: TargetSpecification::default(),
+            smoke: None,
             robot: RobotSpecification::default(),
             sonars: SonarSpecification::reference_ring(),
             camera: CameraSpecification::default(),
@@ -285,6 +322,8 @@ impl Default for TargetSpecification {
                 green: 30,
                 blue: 35,
             },
+            bands: None,
+            sway: None,
             reach_distance_m: 0.25,
         }
     }

@@ -70,3 +70,43 @@ pub struct DetectedObject {
     #[unit("m")]
     pub distance: f64,
 }
+
+/// Where a tracker has found its target in the newest picture, and how sure that is.
+#[derive(PortData, Debug, Clone, Copy, PartialEq, Default)]
+#[repr(C)]
+pub struct TrackedTarget {
+    /// When the picture was taken.
+    #[unit("ns")]
+    pub time: u64,
+    /// 1 if the picture there is like the target, 0 if the target is lost; then the place is the
+    /// last one that was sure.
+    pub visible: u32,
+    /// Pictures since the target was last seen; 0 when it is visible.
+    pub pictures_lost: u32,
+    /// Column of its middle.
+    #[unit("pixel")]
+    pub column: f64,
+    /// Row of its middle.
+    #[unit("pixel")]
+    pub row: f64,
+    /// Direction of its middle.
+    #[unit("rad")]
+    pub bearing: f64,
+    /// Root mean square difference of grey values, 0 to 255, between the target as it was learnt
+    /// and the best match in the picture.
+    pub matching_error: f64,
+}
+
+/// How far the robot shall turn.
+#[derive(PortData, Debug, Clone, Copy, PartialEq, Default)]
+#[repr(C)]
+pub struct TurnReference {
+    /// When the picture was taken from which it follows.
+    #[unit("ns")]
+    pub time: u64,
+    /// 1 if there is something to turn to, 0 if the robot shall stand still.
+    pub valid: u32,
+    /// Angle that is left to turn.
+    #[unit("rad")]
+    pub turn: f64,
+}

@@ -6,7 +6,8 @@ use robot_interface::camera_stream::Picture;
 use robot_interface::serial_line::MotionCommand;
 use robot_simulation::Fault;
 use system_model::world::{
-    Colour, ObstacleShape, ObstacleSpecification, Position, TargetPlace, WorldSpecification,
+    BandSpecification, Colour, ObstacleShape, ObstacleSpecification, Position, SmokeSpecification,
+    SwaySpecification, TargetPlace, WorldSpecification,
 };
 
 use crate::driver::{Driver, empty_world, pose};
@@ -197,6 +198,59 @@ fn the_target_is_hidden_behind_an_obstacle_behind_the_robot_and_in_smoke() {
         },
     });
     assert_eq!(target_columns(&picture(&world, None)), None);
+}
+
+#[test]
+fn the_target_sways_and_fades_when_smoke_begins() {
+    let mut world = empty_world();
+    world.robot.start = pose(2.0, 2.0, 0.0);
+    world.target.place = TargetPlace::Fixed(Position { x_m: 4.0, y_m: 2.0 });
+    world.target.sway = Some(SwaySpecification {
+        amplitude_m: 0.5,
+        period_s: 4.0,
+    });
+    world.smoke = Some(SmokeSpecification {
+        begins_s: 2.0,
+        scattering_per_m: 1.0,
+        airlight: Colour {
+            red: 200,
+            green: 200,
+            blue: 200,
+        },
+    });
+    let mut driver = Driver::new(&world, 1);
+    // The lens is at 2.09 m; 0.5 m to the left at a depth of 1.91 m are 33 columns.
+    let mut column_after = |tenths: u64| {
+        let picture = driver.drive(MotionCommand::stop(), Duration::from_millis(tenths * 100));
+        let found = target_columns(&picture.expect("a picture"));
+        found.map(|(first, last, _)| (first + last).div_ceil(2))
+    };
+    assert_eq!(column_after(10), Some(80 - 33));
+    assert_eq!(column_after(9).map(|it| it.abs_diff(80) < 8), Some(true));
+    assert_eq!(column_after(1), None, "smoke has come");
+}
+
+#[test]
+fn the_target_has_bands() {
+    let mut world = empty_world();
+    world.robot.start = pose(2.0, 2.0, 0.0);
+    world.target.place = TargetPlace::Fixed(Position { x_m: 3.0, y_m: 2.0 });
+    let plain = target_columns(&picture(&world, None))
+        .expect("the target")
+        .2;
+    world.target.bands = Some(BandSpecification {
+        height_m: 0.05,
+        colour: Colour {
+            red: 20,
+            green: 20,
+            blue: 150,
+        },
+    });
+    let banded = target_columns(&picture(&world, None))
+        .expect("the target")
+        .2;
+    let share = banded as f64 / plain as f64;
+    assert!((0.4..0.6).contains(&share), "{banded} of {plain} pixels");
 }
 
 #[test]

@@ -59,6 +59,7 @@ pub(super) fn read(root: &Node<'_>) -> Option<WorldSpecification> {
     let target = root
         .required_child("target")
         .and_then(|node| arena::target(&node, bounds));
+    let smoke = root.child("smoke").map(|node| arena::smoke(&node));
     let robot = root
         .required_child("robot")
         .and_then(|node| robot::read(&node, bounds));
@@ -79,6 +80,10 @@ pub(super) fn read(root: &Node<'_>) -> Option<WorldSpecification> {
             None => None,
         },
         target: target?,
+        smoke: match smoke {
+            Some(smoke) => Some(smoke?),
+            None => None,
+        },
         robot: robot?,
         sonars: sonars?,
         camera: camera?,

@@ -1,10 +1,11 @@
-//! What stands in the world: arena, walls, obstacles, target.
+//! What is in the world: arena, walls, obstacles, target, smoke.
 
 use std::ops::RangeInclusive;
 
 use system_model::world::{
-    ArenaSpecification, ObstacleShape, ObstacleSpecification, RandomObstacleSpecification,
-    TargetPlace, TargetSpecification, WallSpecification,
+    ArenaSpecification, BandSpecification, ObstacleShape, ObstacleSpecification,
+    RandomObstacleSpecification, SmokeSpecification, SwaySpecification, TargetPlace,
+    TargetSpecification, WallSpecification,
 };
 
 use super::quantity::{
@@ -14,6 +15,13 @@ use crate::node::Node;
 
 /// More find no place in any arena that is worth driving in.
 const OBSTACLE_COUNT: RangeInclusive<usize> = 0..=100;
+
+/// A target that sways faster is a blur in any picture; one that is slower stands.
+const SWAY_PERIOD_S: RangeInclusive<f64> = 0.5..=1000.0;
+/// A run of a day.
+const BEGIN_S: RangeInclusive<f64> = 0.0..=86_400.0;
+/// From air that is clear through a hall to smoke in which a hand before the lens is lost.
+const SCATTERING_PER_M: RangeInclusive<f64> = 0.001..=100.0;
 
 /// The four outer walls.
 pub(super) fn read(node: &Node<'_>) -> Option<ArenaSpecification> {
@@ -138,6 +146,8 @@ pub(super) fn target(
     let radius_m = measure(node, "radius_m", SIZE_M);
     let height_m = measure(node, "height_m", SIZE_M);
     let colour = colour(node, "colour");
+    let bands = node.child("bands").map(|node| bands(&node));
+    let sway = node.child("sway").map(|node| sway(&node));
     let reach_distance_m = measure(node, "reach_distance_m", DISTANCE_M);
     node.finish();
     Some(TargetSpecification {
@@ -145,7 +155,48 @@ pub(super) fn target(
         radius_m: radius_m?,
         height_m: height_m?,
         colour: colour?,
+        bands: match bands {
+            Some(bands) => Some(bands?),
+            None => None,
+        },
+        sway: match sway {
+            Some(sway) => Some(sway?),
+            None => None,
+        },
         reach_distance_m: reach_distance_m?,
+    })
+}
+
+fn bands(node: &Node<'_>) -> Option<BandSpecification> {
+    let height_m = attribute(node, "height_m", SIZE_M);
+    let colour = colour(node, "colour");
+    node.finish();
+    Some(BandSpecification {
+        height_m: height_m?,
+        colour: colour?,
+    })
+}
+
+fn sway(node: &Node<'_>) -> Option<SwaySpecification> {
+    let amplitude_m = attribute(node, "amplitude_m", SIZE_M);
+    let period_s = attribute(node, "period_s", SWAY_PERIOD_S);
+    node.finish();
+    Some(SwaySpecification {
+        amplitude_m: amplitude_m?,
+        period_s: period_s?,
+    })
+}
+
+/// Smoke that blows in during a run.
+pub(super) fn smoke(node: &Node<'_>) -> Option<SmokeSpecification> {
+    let begins_s = attribute(node, "begins_s", BEGIN_S);
+    let scattering_per_m = attribute(node, "scattering_per_m", SCATTERING_PER_M);
+    let airlight = colour(node, "airlight");
+    node.finish();
+    Some(SmokeSpecification {
+        begins_s: begins_s?,
+        scattering_per_m: scattering_per_m?,
+        airlight: airlight?,
     })
 }
 

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use robot_interface::port_data::MotionDecision;
-use robot_interface::serial_line::MotionCommand;
+use crate::port_data::MotionDecision;
+use crate::serial_line::MotionCommand;
 
 /// Measures of the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,7 +57,7 @@ impl DifferentialDrive {
 
 #[cfg(test)]
 mod tests {
-    use robot_interface::serial_line::MotionType;
+    use crate::serial_line::MotionType;
 
     use super::*;
 

@@ -1,10 +1,8 @@
-//! Commands and reports as bytes of a line that never blocks.
+//! The main board's end: commands and reports as bytes of a line that never blocks.
 
 use std::io::{self, ErrorKind, Read, Write};
 
-use robot_interface::serial_line::{
-    BoardReport, Decoder, MAXIMUM_FRAME_LENGTH, Message, MotionCommand, encode,
-};
+use super::{BoardReport, Decoder, MAXIMUM_FRAME_LENGTH, Message, MotionCommand, encode};
 
 /// Ten reports at a read.
 const BUFFER_LENGTH: usize = 10 * MAXIMUM_FRAME_LENGTH;
