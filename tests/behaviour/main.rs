@@ -1,6 +1,7 @@
 //! What Steadfast promises, seen from outside.
 #![forbid(unsafe_code)]
 
+mod adaptation;
 mod backtraces;
 mod bad_files;
 mod bad_libraries;

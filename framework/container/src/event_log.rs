@@ -15,6 +15,7 @@ use serde::Serialize;
 use system_model::fault::Fault;
 use unfinished::open_at_end;
 
+use crate::adaptation::AdaptationRecord;
 use crate::outer_supervision::ContainerRestart;
 
 /// Events that may wait for the writer: more than a robot of a hundred components makes in a
@@ -103,6 +104,8 @@ pub enum Event {
         /// How old it is, in milliseconds by the machine's clock.
         age_ms: u64,
     },
+    /// A decision of self-adaptation has ended.
+    Adaptation(Box<AdaptationRecord>),
     /// What the fault manager made of a fault; the last one of an `id` counts.
     Verdict(Box<Verdict>),
     /// An executor did not finish its cycle within its period.

@@ -1,5 +1,6 @@
 //! Running applications: brought up in order, run, and stopped in order, each with a deadline.
 
+mod adaptation;
 mod agenda;
 mod applications;
 mod knowledge;
@@ -95,8 +96,8 @@ impl System {
     ) -> Result<Self, StartError> {
         let began = Instant::now();
         let real = options.clock == ClockKind::Real;
-        let supervised = options.supervised.clone();
-        let outside = supervised.as_ref().and_then(|it| it.world().cloned());
+        let outside = options.supervised.as_ref();
+        let outside = outside.and_then(|it| it.world().cloned());
         let world = outside.or_else(|| simulation.map(|it| Arc::new(World::new(it, real))));
         let (mut recorder, recorded) = options.recorder();
         let (events, writer) = options.open_events(recorded)?;
@@ -120,12 +121,14 @@ impl System {
         let supervisor = Arc::new(supervisor);
         let (runners, calls) = missions::bind_all(&applications, &assembly, &supervisor)?;
         recording::play(&applications, &assembly, &environment)?;
-        recorder
-            .iter_mut()
-            .for_each(|it| supervisor.record_models(it));
+        let recorders = recorder.iter_mut();
+        recorders.for_each(|it| supervisor.record_models(it));
         let recording = recorder
-            .map(|it| recording::record(it, &applications, &assembly, &environment, &options));
-        let recording = recording.transpose()?;
+            .map(|it| recording::record(it, &applications, &assembly, &environment, &options))
+            .transpose()?;
+        let meter = Arc::new(real_time::meter(&assembly.statuses, &assembly.executors));
+        let adaptations = adaptation::adapt(&applications, &assembly, &environment, &meter)
+            .map_err(StartError::Assembly)?;
         let persistence = Persistence::new(&applications, &assembly.factories);
         let Assembly {
             components,
@@ -135,7 +138,6 @@ impl System {
             links,
             ..
         } = assembly;
-        let meter = real_time::meter(&statuses, &executors);
         let system = Self {
             applications: applications.names(),
             specification: applications.specification,
@@ -147,7 +149,7 @@ impl System {
             components: components.into(),
             interfaces: interfaces.into(),
             statuses,
-            meter: Arc::new(meter),
+            meter,
             links: links.into(),
             began,
             crew: Crew::new()?,
@@ -161,7 +163,7 @@ impl System {
             writer,
             recording,
         };
-        system.begin(executors, runners, wanted)
+        system.begin(executors, runners, adaptations, wanted)
     }
 
     /// Why the run is over, if it is: waits at most `limit` for that. Rates and loads are counted

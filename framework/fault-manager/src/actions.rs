@@ -90,9 +90,10 @@ impl FaultManager {
             (Some(Task::Recover), ActionOutcome::Done { incarnation, note }) => {
                 self.recovered(component, incarnation, note);
             }
-            (Some(Task::Recover), ActionOutcome::Failed { reason }) => {
+            (Some(Task::Recover | Task::Adapt), ActionOutcome::Failed { reason }) => {
                 self.recovery_failed(component, "failed", reason);
             }
+            (Some(Task::Adapt), ActionOutcome::Done { note, .. }) => self.adapted(component, note),
             (Some(Task::Stop | Task::Destroy), ActionOutcome::Done { note, .. }) => {
                 self.stop_ended(component, "done", note);
             }

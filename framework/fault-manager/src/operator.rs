@@ -51,6 +51,7 @@ impl FaultManager {
         if let Some(work) = &state.work {
             let doing = match work.task {
                 Task::Recover => "recovered",
+                Task::Adapt => "done without",
                 Task::Stop | Task::Destroy => "stopped",
             };
             let fault = work.fault.0;

@@ -58,6 +58,11 @@ pub enum Action {
         /// As for a reset.
         checkpoint_before: Option<Duration>,
     },
+    /// The task that it takes part in is done without it, in another way.
+    Adapt {
+        /// Index of the component.
+        component: usize,
+    },
     /// ACTIVE -> INACTIVE.
     Stop {
         /// Index of the component.
@@ -87,6 +92,7 @@ impl Action {
         match self {
             Self::Reset { component, .. }
             | Self::Replace { component, .. }
+            | Self::Adapt { component }
             | Self::Stop { component }
             | Self::Destroy { component }
             | Self::Handle { component, .. } => Some(*component),

@@ -10,6 +10,7 @@ mod observers;
 mod recording;
 mod report;
 mod supervised;
+mod tasks;
 mod words;
 
 use std::io::{self, IsTerminal as _, Write as _};

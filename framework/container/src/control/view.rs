@@ -177,7 +177,7 @@ pub struct FaultView {
 /// wrong.
 pub fn level(state: LifeCycleState, condition: Condition, open_faults: usize) -> &'static str {
     match (condition, state) {
-        (Condition::Stopped | Condition::Destroyed, _) => "STALE",
+        (Condition::Stopped | Condition::Destroyed | Condition::Unneeded, _) => "STALE",
         (Condition::Lost, _) => "ERROR",
         (Condition::Recovering | Condition::Waiting, _) => "WARN",
         (Condition::Working, LifeCycleState::Error) => "ERROR",
@@ -196,6 +196,7 @@ pub fn condition_name(condition: Condition) -> &'static str {
         Condition::Stopped => "stopped",
         Condition::Destroyed => "destroyed",
         Condition::Lost => "lost",
+        Condition::Unneeded => "done without",
     }
 }
 

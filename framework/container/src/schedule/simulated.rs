@@ -1,5 +1,6 @@
 //! All executors on one thread, in simulated time.
 
+mod adapting;
 mod playing;
 mod trees;
 
@@ -9,6 +10,7 @@ use std::time::Duration;
 
 use system_model::specification::ExecutionKind;
 
+use crate::adaptation::Adaptation;
 use crate::clock::nanoseconds;
 use crate::component::{ComponentCell, Environment, mark_lost};
 use crate::event_log::Event;
@@ -45,6 +47,9 @@ impl BusyTime {
 /// All executors on one thread, in simulated time: ordered by time, priority, name.
 pub struct Simulated {
     executors: Vec<Executor>,
+    adaptations: Vec<Adaptation>,
+    /// The adaptation that is looking.
+    adapting: Option<usize>,
     components: Arc<[Arc<ComponentCell>]>,
     /// When each is due next; for one without a period, the earliest time it may run again.
     due_ns: Vec<u64>,
@@ -69,6 +74,7 @@ impl Simulated {
     /// Not begun. Ends at `end` of simulated time, or when the robot has reached its target.
     pub fn new(
         mut executors: Vec<Executor>,
+        adaptations: Vec<Adaptation>,
         components: Arc<[Arc<ComponentCell>]>,
         supervisor: Arc<Supervisor>,
         world: Option<Arc<World>>,
@@ -88,6 +94,8 @@ impl Simulated {
                 (Arc::clone(score), played.collect())
             }),
             executors,
+            adaptations,
+            adapting: None,
             components,
             running: None,
             obeying: None,
@@ -237,6 +245,11 @@ impl Work for Simulated {
                 self.tick_trees();
                 continue;
             }
+            match self.adapt_if_due(next.map(|(time_ns, _)| time_ns), lane) {
+                Some(true) => continue,
+                Some(false) => return,
+                None => {}
+            }
             match self.play(next.map(|(time_ns, _)| time_ns), lane) {
                 Played::Nothing => {}
                 Played::Some => continue,
@@ -255,6 +268,9 @@ impl Work for Simulated {
     }
 
     fn after_loss(&mut self, lost: &LostThread) {
+        if self.lost_in_adaptation(lost) {
+            return;
+        }
         let index = self.obeying.take().or(self.running);
         match index.and_then(|index| self.executors.get_mut(index)) {
             Some(executor) => executor.after_loss(&self.components, lost, &self.supervisor),

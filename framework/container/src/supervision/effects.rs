@@ -61,6 +61,14 @@ impl Supervisor {
                 };
                 (*tree, task)
             }
+            Action::Adapt { component } => {
+                let requests = &self.environment.adaptation_requests;
+                if !requests.ask(*component, planned.id) {
+                    let reason = "nobody watches over its task".to_owned();
+                    self.failed(planned.id, reason);
+                }
+                return;
+            }
             Action::Stop { component } => (*component, Task::Stop),
             Action::Destroy { component } => (*component, Task::Destroy),
         };
@@ -116,17 +124,18 @@ impl Supervisor {
         });
     }
 
+    fn failed(&self, action: ActionId, reason: String) {
+        let outcome = ActionOutcome::Failed { reason };
+        let observation = Observation::Ended { action, outcome };
+        self.environment.observations.report(observation);
+    }
+
     pub(super) fn give(&self, order: Order) {
         let action = order.action;
         let orders = self.orders.get(order.component);
         let given = orders.is_some_and(|orders| orders.give(order));
         if let (false, Some(action)) = (given, action) {
-            self.environment.observations.report(Observation::Ended {
-                action,
-                outcome: ActionOutcome::Failed {
-                    reason: "too many orders wait for its executor".to_owned(),
-                },
-            });
+            self.failed(action, "too many orders wait for its executor".to_owned());
         }
     }
 }

@@ -13,6 +13,8 @@ use system_model::profile::Located;
 use system_model::rules::{DependencyRule, Entity, FaultRules};
 use system_model::specification::{ApplicationSpecification, ComponentSpecification};
 
+use crate::adaptation::AttachedTask;
+
 /// One application as it was loaded; everything in it counts components within the application.
 #[derive(Debug, Clone)]
 pub struct Application {
@@ -26,6 +28,8 @@ pub struct Application {
     pub plans: Vec<Arc<Plan>>,
     /// Faults that are made on purpose.
     pub injections: Vec<Injection>,
+    /// The task that it is to do, and is watched over.
+    pub task: Option<AttachedTask>,
 }
 
 /// All applications together.
@@ -224,6 +228,7 @@ mod tests {
             models: Vec::new(),
             plans: Vec::new(),
             injections: Vec::new(),
+            task: None,
         }
     }
 

@@ -8,6 +8,7 @@ use crossbeam::channel::Sender;
 use system_model::injection::Injection;
 
 use super::StartError;
+use crate::adaptation::AdaptationRequests;
 use crate::assembly::LibraryOptions;
 use crate::clock::Clock;
 use crate::component::Environment;
@@ -104,6 +105,7 @@ impl RunOptions {
             scenes: Scenes::default(),
             world,
             score: self.score.clone(),
+            adaptation_requests: AdaptationRequests::default(),
             busy: BusyTime::default(),
         })
     }

@@ -13,6 +13,7 @@ use super::agenda::{Agenda, Failure, Step};
 use super::persistence::Persistence;
 use super::real_time::{self, WorldThread};
 use super::{BRING_UP_LIMIT, ClockKind, STOP_LIMIT, StartError, System};
+use crate::adaptation::{Adaptation, AdaptationLane};
 use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::lane::{Lane, SETUP_TOKEN, remaining};
@@ -25,6 +26,7 @@ impl System {
         mut self,
         executors: Vec<Executor>,
         runners: Vec<Runner>,
+        adaptations: Vec<Adaptation>,
         wanted: Receiver<usize>,
     ) -> Result<Self, StartError> {
         if let Err(error) = self.bring_up() {
@@ -32,7 +34,7 @@ impl System {
             let _log_error = self.close();
             return Err(error);
         }
-        if let Err(error) = self.launch(executors, runners, wanted) {
+        if let Err(error) = self.launch(executors, runners, adaptations, wanted) {
             // What is on the disk is for the next try.
             self.persistence = Persistence::default();
             let _nothing_to_sum_up = self.stop("start_refused");
@@ -188,6 +190,7 @@ impl System {
         &mut self,
         executors: Vec<Executor>,
         runners: Vec<Runner>,
+        adaptations: Vec<Adaptation>,
         wanted: Receiver<usize>,
     ) -> Result<(), StartError> {
         self.environment.observations.report(Observation::Running);
@@ -195,6 +198,7 @@ impl System {
             ClockKind::Simulated => {
                 let work = Simulated::new(
                     executors,
+                    adaptations,
                     Arc::clone(&self.components),
                     Arc::clone(&self.supervisor),
                     self.world.clone(),
@@ -236,6 +240,9 @@ impl System {
                     let environment = Arc::clone(&self.environment);
                     self.mission_threads.start(runner, environment)?;
                 }
+                for adaptation in adaptations {
+                    self.launch_adaptation(adaptation)?;
+                }
             }
         }
         Ok(())
@@ -247,6 +254,17 @@ impl System {
         let work = Caller::new(calls, Arc::clone(&self.components), environment);
         let lane = Lane::new("tree calls", Box::new(work));
         self.crew.start(&lane, || {})?;
+        self.lanes.push((lane, Vec::new()));
+        Ok(())
+    }
+
+    fn launch_adaptation(&mut self, adaptation: Adaptation) -> Result<(), StartError> {
+        let components = Arc::clone(&self.components);
+        let environment = Arc::clone(&self.environment);
+        let work = AdaptationLane::new(adaptation, components, environment);
+        let lane = Lane::new("adaptation", Box::new(work));
+        self.crew.start(&lane, || {})?;
+        // Components of its own it has none: those that it enters belong to their executors.
         self.lanes.push((lane, Vec::new()));
         Ok(())
     }

@@ -55,6 +55,9 @@ impl Shell {
                 assert_eq!(self.facts[component].down, Level::Up);
                 self.count(component, act);
             }
+            Action::Adapt { .. } => {
+                assert!(!latched, "no recovery begins in an emergency stop: {act:?}");
+            }
             Action::Stop { .. } => {
                 self.facts[component].down = self.facts[component].down.max(Level::Stopped);
             }

@@ -131,6 +131,17 @@ pub struct HandleRule {
     pub deadline: Duration,
 }
 
+/// `adapt`: a task that is done in another way when what runs does not do any more. Of an
+/// application: the task is watched over. Of a component: the last rung before the severity of the
+/// loss; the task is to go on without the component.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct AdaptRule {
+    /// File of the task.
+    pub task: String,
+    /// The robot of the task on which the application runs; none where there is only one.
+    pub robot: Option<String>,
+}
+
 /// `actuator`: the component moves something.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ActuatorRule {

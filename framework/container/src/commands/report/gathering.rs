@@ -240,6 +240,7 @@ fn in_words(kind: &str, event: &Value) -> Option<String> {
         }
         "log" | "fault" => return None,
         "notice" => field("message"),
+        "adaptation" => decided(event),
         "container_restarted" => format!(
             "{}; {}; {}; {:.3} s without a container",
             field("seen"),
@@ -258,6 +259,40 @@ fn in_words(kind: &str, event: &Value) -> Option<String> {
         "target_reached" => "the robot has reached its target".to_owned(),
         _ => return None,
     })
+}
+
+/// A decision of self-adaptation: how it ended, how long it took, and what became of each candidate.
+fn decided(event: &Value) -> String {
+    let phases = &event["phases"];
+    let microseconds: u64 = [
+        "monitoring_us",
+        "synthesis_us",
+        "estimation_us",
+        "reconfiguration_us",
+    ]
+    .iter()
+    .map(|phase| number(phases, phase))
+    .sum();
+    let time_s = std::time::Duration::from_micros(microseconds).as_secs_f64();
+    let candidates = event["candidates"].as_array();
+    let candidates = candidates.into_iter().flatten().map(|candidate| {
+        let components = candidate["components"].as_array();
+        let components = components.into_iter().flatten();
+        let components: Vec<&str> = components.filter_map(Value::as_str).collect();
+        let quality = candidate["p_t"].as_f64();
+        let quality = quality.map_or_else(String::new, |it| format!(", P_T {it:.4}"));
+        let reason = match text(candidate, "rejected_because") {
+            reason if reason.is_empty() => "taken".to_owned(),
+            reason => format!("not taken: {reason}"),
+        };
+        format!(
+            "; candidate {} ({}{quality}) {reason}",
+            number(candidate, "number"),
+            components.join(" | ")
+        )
+    });
+    let candidates: String = candidates.collect();
+    format!("{}, after {time_s:.3} s{candidates}", text(event, "text"))
 }
 
 fn text(event: &Value, field: &str) -> String {

@@ -11,7 +11,7 @@ use system_profile::{
     Document, LoadOptions, Problem, Severity, load_application, load_injections, load_rules,
 };
 
-use super::{Failed, errors_on_terminal, exit_code, models, problems, show};
+use super::{Failed, errors_on_terminal, exit_code, models, problems, show, tasks};
 
 /// The files of a run.
 #[derive(Debug, Clone, Copy)]
@@ -33,6 +33,7 @@ pub(in crate::commands) fn load(sources: &Sources<'_>) -> Result<Vec<Application
     for application in &mut applications {
         let (rules, specification) = (&application.rules, &application.specification);
         application.models = models::load(rules, specification, sources.search_path)?;
+        application.task = tasks::load(rules, specification, sources.search_path)?;
     }
     Ok(applications)
 }
@@ -168,6 +169,7 @@ impl Reading<'_> {
             models: Vec::new(),
             plans: Vec::new(),
             injections,
+            task: None,
         }
     }
 

@@ -34,6 +34,7 @@ pub(super) fn describe(event: &Event) -> Option<String> {
             )
         }
         Event::Verdict(verdict) => judged(verdict),
+        Event::Adaptation(record) => format!("ADAPTATION: {}", record.text),
         Event::Injection {
             fault,
             component,

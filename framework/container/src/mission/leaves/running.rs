@@ -53,7 +53,9 @@ impl Leaf for Running {
         // What the fault manager recovers is not lost.
         Ok(match self.reach.condition(self.component) {
             Condition::Working | Condition::Recovering | Condition::Waiting => Status::Running,
-            Condition::Stopped | Condition::Destroyed | Condition::Lost => Status::Failure,
+            Condition::Stopped | Condition::Destroyed | Condition::Lost | Condition::Unneeded => {
+                Status::Failure
+            }
         })
     }
 

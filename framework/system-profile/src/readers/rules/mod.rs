@@ -116,7 +116,7 @@ pub(crate) fn component_elements(node: &Node<'_>, name: &Located<String>) -> Dec
         recovery: handling::recovery(node),
         actuator,
         isolation: isolation::isolation(node),
-        adapt: handling::reference(node, "adapt"),
+        adapt: handling::adapt(node),
         handle: handling::handle(node),
     };
     // Evaluators and estimators belong to the task adaptation, which reads them itself.
@@ -201,6 +201,7 @@ pub(crate) fn application_elements(node: &Node<'_>) -> DeclaredApplication {
     DeclaredApplication {
         name: None,
         heartbeat: conduct::heartbeat(node),
+        adapt: handling::adapt(node),
         fault,
         secondaries,
         dependencies: Vec::new(),

@@ -23,6 +23,7 @@ pub(super) fn finish(assembly: &mut Assembly<'_>, names: &Names<'_>, merged: Mer
         application: names.application.name.clone(),
         fault: merged.fault,
         heartbeat: merged.heartbeat,
+        adapt: merged.adapt,
         components,
         executors: merged.executors,
         nodes: merged.nodes,

@@ -148,6 +148,7 @@ pub(super) fn load(folder: &Path) -> io::Result<Application> {
         models: Vec::new(),
         plans: Vec::new(),
         injections,
+        task: None,
     })
 }
 
