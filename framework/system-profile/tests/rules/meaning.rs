@@ -110,7 +110,7 @@ fn rules_of_components() {
             <standby preload='warm'/>
             <recovery deadline='20'/><isolation group='drive' memory_limit_kb='2048' open_files='32' system_call_filter='false'>process</isolation>
             <actuator stop_category='1'><command port='command' safe_value='0'/></actuator>
-            <adapt>adapt.xml</adapt><handle tree='rescue' deadline='5s'/>",
+            <adapt>adapt.xml</adapt>",
         )])
         .sound();
     let motor = &rules.components[4];
@@ -157,9 +157,7 @@ fn rules_of_components() {
     assert_eq!(actuator.stop_category, StopCategory::ControlledThenOff);
     assert_eq!(motor.ports[0].checks.safe_values[0].value.value, 0.0);
     assert_eq!(motor.adapt.as_ref().unwrap().value, "adapt.xml");
-    let handle = &motor.handle.as_ref().unwrap().value;
-    assert_eq!(handle.tree, "rescue");
-    assert_eq!(handle.deadline, Duration::from_secs(5));
+    assert_eq!(motor.handle, None);
 }
 
 #[test]
