@@ -84,6 +84,10 @@ fn check_fault_events(
 /// A fault can only be handled by a tree that waits for that.
 fn check_handle(assembly: &Assembly<'_>, names: &Names<'_>, rules: &ComponentRules) {
     let Some(handle) = &rules.handle else { return };
+    // A profile that is checked by itself belongs to no application yet.
+    if names.application.name.is_empty() {
+        return;
+    }
     let name = &handle.value.tree;
     let trees = &names.application.trees;
     let (message, help) = match trees.iter().find(|tree| tree.name == *name) {
