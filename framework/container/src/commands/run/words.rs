@@ -41,10 +41,8 @@ pub(super) fn describe(event: &Event) -> Option<String> {
             change,
         } => {
             let place = component.as_ref().map(|name| format!(" in {name}"));
-            format!(
-                "injected fault {fault} {change}{}",
-                place.unwrap_or_default()
-            )
+            let place = place.unwrap_or_default();
+            format!("injected fault {fault} {change}{place}")
         }
         Event::DatumSetAside {
             component, port, ..
