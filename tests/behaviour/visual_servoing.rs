@@ -25,11 +25,12 @@ fn drive(application: &str, seed: u64) -> Vec<Tracked> {
     let seed = seed.to_string();
     let profile = repository().join(format!("profiles/applications/{application}.xml"));
     let arguments = ["--clock", "simulated", "--for", "12s", "--seed", &seed];
-    run.run_file(
-        &profile,
-        &[&arguments[..], &["--record", recording]].concat(),
-    )
-    .ended_well();
+    let _ended = run
+        .run_file(
+            &profile,
+            &[&arguments[..], &["--record", recording]].concat(),
+        )
+        .ended_well();
     tracked(&file)
 }
 

@@ -142,6 +142,24 @@ pub enum Event {
         /// Why it was judged so.
         judged: String,
     },
+    /// A behaviour tree has begun, ended, failed or was halted.
+    TreeState {
+        /// Its name.
+        tree: String,
+        /// What it did before: `waiting`, `running`, `success`, `failure`, `failed` or `stopped`.
+        from: &'static str,
+        /// What it does now.
+        to: &'static str,
+    },
+    /// Nodes of a behaviour tree have other states after a tick than they had before.
+    TreeNodes {
+        /// The tree's name.
+        tree: String,
+        /// Path and state of each.
+        nodes: Vec<(String, &'static str)>,
+        /// Further ones that are left out, so that a tree does not fill the record.
+        left_out: u64,
+    },
     /// The robot has reached its target.
     TargetReached {
         /// Robot time in seconds.

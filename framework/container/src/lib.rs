@@ -21,6 +21,7 @@ pub mod injection;
 pub mod lane;
 pub mod library;
 pub mod metrics;
+pub mod mission;
 pub mod outer_supervision;
 pub mod persistence;
 pub mod port;

@@ -4,6 +4,7 @@ mod adaptation;
 mod agenda;
 mod applications;
 mod knowledge;
+mod missions;
 mod options;
 mod outcome;
 mod persistence;
@@ -26,6 +27,7 @@ use crate::component::{ComponentCell, Environment};
 use crate::event_log::{Event, EventWriter};
 use crate::lane::{Crew, Lane, remaining};
 use crate::library::PortDescription;
+use crate::mission::{Calls, MissionThreads, Runner, TreeStatus};
 use crate::recording::RecordingThread;
 use crate::status::{ComponentStatus, Meter};
 use crate::summary::Summary;
@@ -71,6 +73,10 @@ pub struct System {
     left_behind: LeftBehind,
     supervisor: Arc<Supervisor>,
     manager_threads: ManagerThreads,
+    trees: Vec<Arc<TreeStatus>>,
+    mission_threads: MissionThreads,
+    /// What trees ask of services.
+    calls: Arc<Calls>,
     persistence: Persistence,
     writer: EventWriter,
     recording: Option<RecordingThread>,
@@ -112,6 +118,8 @@ impl System {
         inject(&injections, &assembly, &environment).map_err(StartError::Assembly)?;
         let (supervisor, wanted) =
             supervise(&applications, &assembly, &environment).map_err(StartError::Assembly)?;
+        let supervisor = Arc::new(supervisor);
+        let (runners, calls) = missions::bind_all(&applications, &assembly, &supervisor)?;
         recording::play(&applications, &assembly, &environment)?;
         recorder
             .iter_mut()
@@ -120,8 +128,7 @@ impl System {
             .map(|it| recording::record(it, &applications, &assembly, &environment, &options));
         let recording = recording.transpose()?;
         let meter = Arc::new(real_time::meter(&assembly.statuses, &assembly.executors));
-        let adaptations = adaptation::adapt(&applications, &assembly, &environment, &meter)
-            .map_err(StartError::Assembly)?;
+        let adaptations = adaptation::adapt(&applications, &assembly, &environment, &meter)?;
         let persistence = Persistence::new(&applications, &assembly.factories);
         let Assembly {
             components,
@@ -147,13 +154,16 @@ impl System {
             began,
             crew: Crew::new()?,
             lanes: Vec::new(),
-            supervisor: Arc::new(supervisor),
+            supervisor,
             manager_threads: ManagerThreads::default(),
+            trees: runners.iter().map(Runner::status).collect(),
+            mission_threads: MissionThreads::default(),
+            calls,
             persistence,
             writer,
             recording,
         };
-        system.begin(executors, adaptations, wanted)
+        system.begin(executors, adaptations, runners, wanted)
     }
 
     /// Why the run is over, if it is: waits at most `limit` for that. Rates and loads are counted
@@ -178,10 +188,16 @@ impl System {
         }
     }
 
+    /// The behaviour trees of all applications.
+    pub fn trees(&self) -> &[Arc<TreeStatus>] {
+        &self.trees
+    }
+
     /// Stops everything in order and says what the run came to.
     pub fn stop(mut self, reason: &'static str) -> (Summary, Option<std::io::Error>) {
         let mut summary = self.summary(reason);
         let deadline = Instant::now() + STOP_LIMIT;
+        self.mission_threads.stop(deadline);
         self.manager_threads.stop(&self.supervisor);
         for (lane, _) in &self.lanes {
             lane.stop();

@@ -71,7 +71,7 @@ impl FaultManager {
 
     /// An action has ended.
     pub(crate) fn ended(&mut self, action: ActionId, outcome: ActionOutcome) {
-        if self.emergency_ended(action, &outcome) {
+        if self.emergency_ended(action, &outcome) || self.tree_ended(action, &outcome) {
             return;
         }
         let under_way = |work: &Work| work.id == action && work.ended.is_none();

@@ -51,6 +51,14 @@ impl FaultManager {
         }
         let index = fault.component;
         let before = fault.first_symptom();
+        if let Some(other) = self.handled_by_tree(index).filter(|other| *other != id) {
+            // What the tree does may be all that is needed: judged anew when it has ended.
+            if let Some(fault) = self.history.get_mut(id) {
+                fault.waits = Some(Wait::Root(other));
+                self.changed.insert(id);
+            }
+            return;
+        }
         let checkpoint_before = self.checkpoint_before(index, before);
         let component = &self.system.components[index];
         let rule = component.fault;
@@ -76,6 +84,7 @@ impl FaultManager {
                 let sentence = wording::action(&self.system, &action);
                 self.recover(id, action, sentence, self.now);
             }
+            Rung::HandleByTree => self.handle_by_tree(id, index),
             Rung::Adapt => self.adapt(id, index),
             Rung::Exhausted => match rule.severity {
                 ApplicationSeverity::Ignore => self.stop(id, Reach::Component(index)),

@@ -22,6 +22,8 @@ pub(crate) struct Ladder {
     /// A secondary was chosen and has not worked yet: there is nothing that a reset could bring
     /// back.
     replacing: bool,
+    /// When a tree was begun last.
+    handled_at: Option<Duration>,
 }
 
 /// What is to be tried next.
@@ -35,6 +37,8 @@ pub(crate) enum Rung {
     },
     /// The secondary of this index.
     Replace(usize),
+    /// A behaviour tree, once within the window.
+    HandleByTree,
     /// The task is to go on without the component.
     Adapt,
     /// Nothing that brings the component back.
@@ -67,6 +71,11 @@ impl Ladder {
             self.replacing = true;
             return Rung::Replace(secondary);
         }
+        let in_vain = |at: &Duration| at.saturating_add(rule.window) > now;
+        if component.rules.handle.is_some() && !self.handled_at.as_ref().is_some_and(in_vain) {
+            self.handled_at = Some(now);
+            return Rung::HandleByTree;
+        }
         if component.rules.adapt.is_some() && !self.adapted {
             self.adapted = true;
             return Rung::Adapt;
@@ -77,6 +86,11 @@ impl Ladder {
     /// An operator has looked at it: resets are counted from nothing. A secondary that was used up
     /// stays so.
     pub fn renew(&mut self) {
+        self.handled_at = None;
+        self.renew_resets();
+    }
+
+    fn renew_resets(&mut self) {
         self.resets.clear();
         self.in_vain = 0;
         self.replacing = false;
@@ -100,7 +114,7 @@ impl Ladder {
         self.in_vain = 0;
         self.adapted = false;
         if self.replacing {
-            self.renew();
+            self.renew_resets();
         }
     }
 

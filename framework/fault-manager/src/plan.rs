@@ -73,6 +73,15 @@ pub enum Action {
         /// Index of the component.
         component: usize,
     },
+    /// A behaviour tree is begun for a fault of the component; it ends as the tree does.
+    Handle {
+        /// Index of the component.
+        component: usize,
+        /// Index of the tree, behind those of all components.
+        tree: usize,
+        /// By then it must have ended.
+        within: Duration,
+    },
     /// All actuators, each by its stop category; latched until [`Effect::Rearm`].
     EmergencyStop,
 }
@@ -85,7 +94,8 @@ impl Action {
             | Self::Replace { component, .. }
             | Self::Adapt { component }
             | Self::Stop { component }
-            | Self::Destroy { component } => Some(*component),
+            | Self::Destroy { component }
+            | Self::Handle { component, .. } => Some(*component),
             Self::EmergencyStop => None,
         }
     }

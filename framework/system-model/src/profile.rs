@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::mission::DeclaredTree;
 use crate::specification::{ExecutionSemantics, Place, PortDirection, PortKind, PortSpecification};
 
 /// A value and the place it was read from.
@@ -129,6 +130,19 @@ pub struct ApplicationProfile {
     pub coordination: Vec<CoordinationRule>,
     /// File of the simulated world that the application drives in.
     pub world: Option<Located<String>>,
+    /// Behaviour trees, in document order.
+    pub trees: Vec<TreeReference>,
+}
+
+/// `tree`: a behaviour tree that acts on the application's components.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TreeReference {
+    /// File of the tree.
+    pub file: Located<String>,
+    /// ID of the tree in it; without it the one that the file names.
+    pub main: Option<Located<String>>,
+    /// All else.
+    pub declared: DeclaredTree,
 }
 
 /// `composite_component_profile`: components that are used as one.

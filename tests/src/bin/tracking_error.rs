@@ -73,88 +73,103 @@ fn changes(events: &Path) -> Result<Vec<f64>, String> {
 fn draw(points: &[(f64, f64)], changes: &[f64]) -> String {
     let end_s = points.last().map_or(1.0, |(time_s, _)| time_s.ceil());
     let largest = points.iter().map(|(_, error)| *error);
-    let top = largest.fold(LEAST_TOP, f64::max);
-    let x = |time_s: f64| MARGIN + time_s / end_s * (WIDTH - 2.0 * MARGIN);
-    let y = |error: f64| HEIGHT - MARGIN - error / top * (HEIGHT - 2.0 * MARGIN);
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" \
-         font-family=\"sans-serif\" font-size=\"12\">\n\
-         <rect width=\"{WIDTH}\" height=\"{HEIGHT}\" fill=\"white\"/>\n"
-    );
-    let mut line = |from: (f64, f64), to: (f64, f64), style: &str| {
-        let ((x1, y1), (x2, y2)) = (from, to);
-        let element = format!("<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\"");
-        // Writing to memory does not fail.
-        let _infallible = writeln!(svg, "{element} {style}/>");
+    let mut figure = Figure {
+        end_s,
+        top: largest.fold(LEAST_TOP, f64::max),
+        svg: format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" \
+             font-family=\"sans-serif\" font-size=\"12\">\n\
+             <rect width=\"{WIDTH}\" height=\"{HEIGHT}\" fill=\"white\"/>\n"
+        ),
     };
-    let axis = "stroke=\"#888\"";
-    line((x(0.0), y(0.0)), (x(end_s), y(0.0)), axis);
-    line((x(0.0), y(0.0)), (x(0.0), y(top)), axis);
-    let dashed = "stroke=\"#c33\" stroke-dasharray=\"6 4\"";
-    line((x(0.0), y(MOST_ERROR)), (x(end_s), y(MOST_ERROR)), dashed);
-    line(
-        (x(SMOKE_S), y(0.0)),
-        (x(SMOKE_S), y(top)),
-        "stroke=\"#aaa\"",
-    );
-    for change in changes {
-        line(
-            (x(*change), y(0.0)),
-            (x(*change), y(top)),
-            "stroke=\"#393\"",
+    figure.lines(changes);
+    figure.curve(points);
+    figure.labels(changes);
+    figure.svg + "</svg>\n"
+}
+
+struct Figure {
+    end_s: f64,
+    /// The largest error that fits.
+    top: f64,
+    svg: String,
+}
+
+impl Figure {
+    fn at(&self, time_s: f64, error: f64) -> (f64, f64) {
+        let x = MARGIN + time_s / self.end_s * (WIDTH - 2.0 * MARGIN);
+        (
+            x,
+            HEIGHT - MARGIN - error / self.top * (HEIGHT - 2.0 * MARGIN),
+        )
+    }
+
+    fn line(&mut self, from: (f64, f64), to: (f64, f64), style: &str) {
+        let ((x1, y1), (x2, y2)) = (self.at(from.0, from.1), self.at(to.0, to.1));
+        // Writing to memory does not fail.
+        let _infallible = writeln!(
+            self.svg,
+            "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" {style}/>"
         );
     }
-    let corners = points
-        .iter()
-        .map(|(time_s, error)| format!("{:.1},{:.1}", x(*time_s), y(*error)));
-    let corners: Vec<String> = corners.collect();
-    let _infallible = writeln!(
-        svg,
-        "<polyline points=\"{}\" fill=\"none\" stroke=\"#236\" stroke-width=\"1.5\"/>",
-        corners.join(" ")
-    );
-    let mut words = |at: (f64, f64), anchor: &str, text: &str| {
-        let (x, y) = at;
+
+    /// Words beside a point, `beside` pixels to the right and down.
+    fn words(&mut self, point: (f64, f64), beside: (f64, f64), anchor: &str, text: &str) {
+        let (x, y) = self.at(point.0, point.1);
+        let (x, y) = (x + beside.0, y + beside.1);
         let _infallible = writeln!(
-            svg,
+            self.svg,
             "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>"
         );
-    };
-    words(
-        (x(SMOKE_S) - 6.0, y(top) + 10.0),
-        "end",
-        "smoke blows in, 4.4 s",
-    );
-    for change in changes {
-        let text = format!("done with the software dehazer, {change:.3} s");
-        words((x(*change) + 6.0, y(top) + 10.0), "start", &text);
     }
-    words(
-        (x(0.0) + 6.0, y(MOST_ERROR) - 6.0),
-        "start",
-        "not good enough above",
-    );
-    words((x(end_s), y(0.0) + 30.0), "end", "time in seconds");
-    words(
-        (x(0.0), y(top) - 10.0),
-        "start",
-        "tracking error in grey values",
-    );
-    let mut second = 0.0;
-    while second <= end_s {
-        words(
-            (x(second), y(0.0) + 16.0),
-            "middle",
-            &format!("{second:.0}"),
-        );
-        second += 1.0;
+
+    fn lines(&mut self, changes: &[f64]) {
+        let (end_s, top) = (self.end_s, self.top);
+        self.line((0.0, 0.0), (end_s, 0.0), "stroke=\"#888\"");
+        self.line((0.0, 0.0), (0.0, top), "stroke=\"#888\"");
+        let dashed = "stroke=\"#c33\" stroke-dasharray=\"6 4\"";
+        self.line((0.0, MOST_ERROR), (end_s, MOST_ERROR), dashed);
+        self.line((SMOKE_S, 0.0), (SMOKE_S, top), "stroke=\"#aaa\"");
+        for change in changes {
+            self.line((*change, 0.0), (*change, top), "stroke=\"#393\"");
+        }
     }
-    for error in [0.0, 20.0, 40.0, 60.0] {
-        words(
-            (x(0.0) - 6.0, y(error) + 4.0),
-            "end",
-            &format!("{error:.0}"),
+
+    fn curve(&mut self, points: &[(f64, f64)]) {
+        let corners = points.iter().map(|(time_s, error)| {
+            let (x, y) = self.at(*time_s, *error);
+            format!("{x:.1},{y:.1}")
+        });
+        let corners: Vec<String> = corners.collect();
+        let _infallible = writeln!(
+            self.svg,
+            "<polyline points=\"{}\" fill=\"none\" stroke=\"#236\" stroke-width=\"1.5\"/>",
+            corners.join(" ")
         );
     }
-    svg + "</svg>\n"
+
+    fn labels(&mut self, changes: &[f64]) {
+        let (end_s, top) = (self.end_s, self.top);
+        let smoke = format!("smoke blows in, {SMOKE_S} s");
+        self.words((SMOKE_S, top), (-6.0, 10.0), "end", &smoke);
+        for change in changes {
+            let text = format!("done with the software dehazer, {change:.3} s");
+            self.words((*change, top), (6.0, 10.0), "start", &text);
+        }
+        let threshold = "not good enough above";
+        self.words((0.0, MOST_ERROR), (6.0, -6.0), "start", threshold);
+        self.words((end_s, 0.0), (0.0, 30.0), "end", "time in seconds");
+        let axis = "tracking error in grey values";
+        self.words((0.0, top), (0.0, -10.0), "start", axis);
+        let mut second = 0.0;
+        while second <= end_s {
+            let text = format!("{second:.0}");
+            self.words((second, 0.0), (0.0, 16.0), "middle", &text);
+            second += 1.0;
+        }
+        for error in [0.0, 20.0, 40.0, 60.0] {
+            let text = format!("{error:.0}");
+            self.words((0.0, error), (-6.0, 4.0), "end", &text);
+        }
+    }
 }

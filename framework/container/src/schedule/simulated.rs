@@ -1,7 +1,9 @@
 //! All executors on one thread, in simulated time.
 
 mod adapting;
+mod idling;
 mod playing;
+mod trees;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -16,6 +18,7 @@ use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::guard::loss::LostThread;
 use crate::lane::{Lane, Work};
+use crate::mission::{Calls, Runner};
 use crate::replay::Score;
 use crate::supervision::Supervisor;
 use crate::world::World;
@@ -59,6 +62,11 @@ pub struct Simulated {
     supervisor: Arc<Supervisor>,
     world: Option<Arc<World>>,
     end_ns: u64,
+    /// Behaviour trees, and whether they have been told that all has been started.
+    trees: Vec<Runner>,
+    trees_begun: bool,
+    /// What they ask of services.
+    calls: Arc<Calls>,
     /// The recording that is played, and for each executor whether all its components are.
     played: Option<(Arc<Score>, Vec<bool>)>,
 }
@@ -92,6 +100,9 @@ impl Simulated {
             components,
             running: None,
             obeying: None,
+            trees: Vec::new(),
+            trees_begun: false,
+            calls: Arc::default(),
             environment,
             supervisor,
             world,
@@ -166,6 +177,13 @@ impl Simulated {
     /// Lets the fault manager see what happened, and does at once what it asks.
     fn serve(&mut self, lane: &Lane) {
         self.supervisor.attend();
+        self.serve_executors(lane);
+        while self.obey_in_trees() || self.call_for_trees(lane) {
+            self.serve_executors(lane);
+        }
+    }
+
+    fn serve_executors(&mut self, lane: &Lane) {
         while let Some(index) = (self.executors.iter()).position(|one| !one.orders.is_empty()) {
             self.obeying = Some(index);
             self.executors[index].obey(&self.supervisor, lane);
@@ -202,11 +220,18 @@ impl Work for Simulated {
             if lane.is_stopping() {
                 return;
             }
+            self.begin_trees();
             self.serve(lane);
             let next = self.next();
+            match self.adapt_if_due(next.map(|(time_ns, _)| time_ns), lane) {
+                Some(true) => continue,
+                Some(false) => return,
+                None => {}
+            }
             // What time brings comes before what is executed at that time.
             let tick_ns = self.supervisor.due_ns();
             if let Some(tick_ns) = tick_ns
+                && self.tree_due_ns().is_none_or(|due_ns| tick_ns <= due_ns)
                 && next.is_none_or(|(time_ns, _)| tick_ns <= time_ns)
                 && self.cue_ns().is_none_or(|cue_ns| tick_ns <= cue_ns)
                 && !self.is_over(next.map(|(time_ns, _)| time_ns))
@@ -217,10 +242,14 @@ impl Work for Simulated {
                 self.supervisor.tick();
                 continue;
             }
-            match self.adapt_if_due(next.map(|(time_ns, _)| time_ns), lane) {
-                Some(true) => continue,
-                Some(false) => return,
-                None => {}
+            if let Some(due_ns) = self.tree_due_ns()
+                && next.is_none_or(|(time_ns, _)| due_ns <= time_ns)
+            {
+                if due_ns > self.environment.clock.now_ns() && !self.advance(due_ns) {
+                    return;
+                }
+                self.tick_trees();
+                continue;
             }
             match self.play(next.map(|(time_ns, _)| time_ns), lane) {
                 Played::Nothing => {}
@@ -247,22 +276,6 @@ impl Work for Simulated {
         match index.and_then(|index| self.executors.get_mut(index)) {
             Some(executor) => executor.after_loss(&self.components, lost, &self.supervisor),
             None => mark_lost(&self.components, lost, false),
-        }
-    }
-}
-
-impl Simulated {
-    fn idle_until_end(&self, lane: &Lane) {
-        /// Steps in which an idle run goes to its end, so that it can be stopped.
-        const IDLE_STEP_NS: u64 = 100_000_000;
-        if self.end_ns == u64::MAX {
-            return;
-        }
-        while !lane.is_stopping() {
-            let next = self.environment.clock.now_ns().saturating_add(IDLE_STEP_NS);
-            if !self.advance(next) {
-                return;
-            }
         }
     }
 }

@@ -63,6 +63,12 @@ impl Supervisor {
                 }
                 return;
             }
+            Action::Handle { tree, within, .. } => {
+                let task = Task::Handle {
+                    until_ns: now_ns.saturating_add(nanoseconds(*within)),
+                };
+                (*tree, task)
+            }
             Action::Stop { component } => (*component, Task::Stop),
             Action::Destroy { component } => (*component, Task::Destroy),
         };

@@ -237,6 +237,7 @@ fn application() -> ApplicationSpecification {
         manager_connections: Vec::new(),
         coordination: Vec::new(),
         world: None,
+        trees: Vec::new(),
     }
 }
 

@@ -13,10 +13,11 @@ use super::agenda::{Agenda, Failure, Step};
 use super::persistence::Persistence;
 use super::real_time::{self, WorldThread};
 use super::{BRING_UP_LIMIT, ClockKind, STOP_LIMIT, StartError, System};
-use crate::adaptation::{Adaptation, AdaptationLane};
+use crate::adaptation::Adaptation;
 use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::lane::{Lane, SETUP_TOKEN, remaining};
+use crate::mission::{Caller, Runner};
 use crate::schedule::{RealTime, Simulated};
 
 impl System {
@@ -25,6 +26,7 @@ impl System {
         mut self,
         executors: Vec<Executor>,
         adaptations: Vec<Adaptation>,
+        runners: Vec<Runner>,
         wanted: Receiver<usize>,
     ) -> Result<Self, StartError> {
         if let Err(error) = self.bring_up() {
@@ -32,7 +34,7 @@ impl System {
             let _log_error = self.close();
             return Err(error);
         }
-        if let Err(error) = self.launch(executors, adaptations, wanted) {
+        if let Err(error) = self.launch(executors, adaptations, runners, wanted) {
             // What is on the disk is for the next try.
             self.persistence = Persistence::default();
             let _nothing_to_sum_up = self.stop("start_refused");
@@ -188,6 +190,7 @@ impl System {
         &mut self,
         executors: Vec<Executor>,
         adaptations: Vec<Adaptation>,
+        runners: Vec<Runner>,
         wanted: Receiver<usize>,
     ) -> Result<(), StartError> {
         self.environment.observations.report(Observation::Running);
@@ -200,7 +203,8 @@ impl System {
                     Arc::clone(&self.supervisor),
                     self.world.clone(),
                     self.options.duration,
-                );
+                )
+                .with_trees(runners, Arc::clone(&self.calls));
                 let lane = Lane::new("simulated", Box::new(work));
                 self.crew.start(&lane, || {})?;
                 let members = (0..self.components.len()).collect();
@@ -232,18 +236,24 @@ impl System {
                 for adaptation in adaptations {
                     self.launch_adaptation(adaptation)?;
                 }
+                if self.calls.is_used() {
+                    self.launch_caller()?;
+                }
+                for runner in runners {
+                    let environment = Arc::clone(&self.environment);
+                    self.mission_threads.start(runner, environment)?;
+                }
             }
         }
         Ok(())
     }
 
-    fn launch_adaptation(&mut self, adaptation: Adaptation) -> Result<(), StartError> {
-        let components = Arc::clone(&self.components);
+    fn launch_caller(&mut self) -> Result<(), StartError> {
+        let calls = Arc::clone(&self.calls);
         let environment = Arc::clone(&self.environment);
-        let work = AdaptationLane::new(adaptation, components, environment);
-        let lane = Lane::new("adaptation", Box::new(work));
+        let work = Caller::new(calls, Arc::clone(&self.components), environment);
+        let lane = Lane::new("tree calls", Box::new(work));
         self.crew.start(&lane, || {})?;
-        // Components of its own it has none: those that it enters belong to their executors.
         self.lanes.push((lane, Vec::new()));
         Ok(())
     }

@@ -115,6 +115,7 @@ fn a_replacement_that_never_worked_is_followed_by_the_next_secondary() {
         match ladder.climb(&component, Duration::ZERO) {
             Rung::Reset { .. } => "reset".to_owned(),
             Rung::Replace(secondary) => format!("secondary {secondary}"),
+            Rung::HandleByTree => "tree".to_owned(),
             Rung::Adapt => "adapt".to_owned(),
             Rung::Exhausted => "exhausted".to_owned(),
         }

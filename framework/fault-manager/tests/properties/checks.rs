@@ -62,7 +62,7 @@ impl Shell {
                 self.facts[component].down = self.facts[component].down.max(Level::Stopped);
             }
             Action::Destroy { .. } => self.facts[component].down = Level::Destroyed,
-            Action::EmergencyStop => {}
+            Action::Handle { .. } | Action::EmergencyStop => {}
         }
         self.facts[component].awaits_first_cycle = false;
     }

@@ -129,6 +129,19 @@ pub struct AdaptRule {
     pub robot: Option<String>,
 }
 
+/// As long as a person would wait for a robot that does nothing visible.
+pub const DEFAULT_HANDLE_DEADLINE: Duration = Duration::from_secs(10);
+
+/// `handle`: a behaviour tree of the application handles the fault, after resets and secondaries and
+/// before the severity of the loss.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct HandleRule {
+    /// Name of the tree.
+    pub tree: String,
+    /// By then it must have ended.
+    pub deadline: Duration,
+}
+
 /// `actuator`: the component moves something.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ActuatorRule {

@@ -19,10 +19,11 @@ pub use diagnosis::{
     ApplicationSeverity, ComponentSeverity, DependencyRule, DependencySeverity, Entity, Provider,
 };
 pub use handling::{
-    ActuatorRule, AdaptRule, DEFAULT_FAULT_WINDOW, DEFAULT_PERSISTED_MAX_AGE, DEFAULT_RETRY_MAX,
-    FaultRule, IsolationRule, IsolationTier, MAX_RETRY_MAX, MAX_SAFE_STATE_BYTES, Preload,
-    ProcessLimits, RecoveryRule, ResurrectRule, SafeStateRule, SafeValue, Secondary, StopCategory,
-    declared_replacement_cost, declared_reset_cost,
+    ActuatorRule, AdaptRule, DEFAULT_FAULT_WINDOW, DEFAULT_HANDLE_DEADLINE,
+    DEFAULT_PERSISTED_MAX_AGE, DEFAULT_RETRY_MAX, FaultRule, HandleRule, IsolationRule,
+    IsolationTier, MAX_RETRY_MAX, MAX_SAFE_STATE_BYTES, Preload, ProcessLimits, RecoveryRule,
+    ResurrectRule, SafeStateRule, SafeValue, Secondary, StopCategory, declared_replacement_cost,
+    declared_reset_cost,
 };
 pub use monitor::{
     DecisionRule, MonitorRule, ProcessModelRule, RulePort, VotingMethod, VotingRule, VotingSource,
@@ -97,8 +98,8 @@ pub struct ComponentRules {
     pub isolation: Option<Located<IsolationRule>>,
     /// When all recovery is exhausted, the task is to go on without the component.
     pub adapt: Option<Located<AdaptRule>>,
-    /// `handle`: file of the task that is run when the component has a fault.
-    pub handle: Option<Located<String>>,
+    /// When all recovery is exhausted, a behaviour tree handles the fault.
+    pub handle: Option<Located<HandleRule>>,
 }
 
 /// All rules of one port.

@@ -6,6 +6,7 @@ use system_model::profile::{
 };
 
 use super::header::{self, required_attribute, required_text};
+use super::mission;
 use super::ports;
 use super::{APPLICATION_RULES, COMPONENT_RULES};
 use crate::node::Node;
@@ -20,6 +21,7 @@ pub(super) fn read(root: &Node<'_>) -> ApplicationProfile {
         connections: connections(root),
         coordination: coordination(root),
         world: world(root),
+        trees: mission::trees(root),
     }
 }
 

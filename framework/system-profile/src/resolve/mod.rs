@@ -7,6 +7,7 @@ mod files;
 pub(crate) mod injections;
 mod instances;
 mod manager;
+mod missions;
 mod ports;
 mod references;
 pub(crate) mod rules;
@@ -14,11 +15,13 @@ pub(crate) mod rules;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
+use behavior_tree::Plan;
 use system_model::profile::{ApplicationProfile, CompositeProfile, Profile};
 use system_model::specification::{
     ApplicationSpecification, ComponentSpecification, ManagerConnection,
 };
 
+use crate::check::FileReport;
 use crate::problem::{Problem, Severity};
 use crate::suggest;
 use connections::Wire;
@@ -52,6 +55,8 @@ impl Default for LoadOptions {
 pub struct LoadOutcome {
     /// The application, if no file has an error and no reference dangles.
     pub specification: Option<ApplicationSpecification>,
+    /// The plans of its behaviour trees, in the order of the specification.
+    pub plans: Vec<Plan>,
     /// All problems of all files involved, file by file in the order they were opened.
     pub problems: Vec<Problem>,
 }
@@ -78,9 +83,13 @@ pub fn load_application(path: &Path, options: &LoadOptions) -> LoadOutcome {
         }
         _ => None,
     };
+    let mut problems = assembly.files.problems();
+    let reports = assembly.tree_files.iter();
+    problems.extend(reports.flat_map(|report| report.problems.iter().cloned()));
     LoadOutcome {
         specification: specification.filter(|_| assembly.is_sound()),
-        problems: assembly.files.problems(),
+        plans: std::mem::take(&mut assembly.plans),
+        problems,
     }
 }
 
@@ -100,6 +109,9 @@ pub(crate) struct Assembly<'o> {
     sites: Vec<Site>,
     /// The composites that were expanded, and what the names of their members begin with.
     expanded: Vec<(Rc<LoadedFile>, String)>,
+    /// The behaviour trees' plans, and the files that they come from.
+    plans: Vec<Plan>,
+    pub(crate) tree_files: Vec<FileReport>,
 }
 
 impl<'o> Assembly<'o> {
@@ -116,6 +128,8 @@ impl<'o> Assembly<'o> {
             dangling: false,
             sites: Vec::new(),
             expanded: Vec::new(),
+            plans: Vec::new(),
+            tree_files: Vec::new(),
         }
     }
 
@@ -134,6 +148,7 @@ impl<'o> Assembly<'o> {
             .map(|reference| self.find(file, reference, Sibling::Worlds));
         connections::check(&self.wires);
         coordination::check(&self.edges, &self.components);
+        let trees = self.trees(file, &profile.trees);
         if matches!(world, Some(None)) {
             return None;
         }
@@ -145,6 +160,7 @@ impl<'o> Assembly<'o> {
             connections: self.wires.drain(..).map(|wire| wire.connection).collect(),
             coordination: self.edges.drain(..).map(|edge| edge.ends).collect(),
             world: world.flatten(),
+            trees,
         })
     }
 

@@ -110,7 +110,7 @@ fn rules_of_components() {
             <standby preload='warm'/>
             <recovery deadline='20'/><isolation group='drive' memory_limit_kb='2048' open_files='32' system_call_filter='false'>process</isolation>
             <actuator stop_category='1'><command port='command' safe_value='0'/></actuator>
-            <adapt task='adapt.xml' robot='R2'/><handle><reference>handle.xml</reference></handle>",
+            <adapt task='adapt.xml' robot='R2'/>",
         )])
         .sound();
     let motor = &rules.components[4];
@@ -161,7 +161,7 @@ fn rules_of_components() {
         (adapt.task.as_str(), adapt.robot.as_deref()),
         ("adapt.xml", Some("R2"))
     );
-    assert_eq!(motor.handle.as_ref().unwrap().value, "handle.xml");
+    assert_eq!(motor.handle, None);
 }
 
 #[test]

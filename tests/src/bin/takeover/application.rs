@@ -184,6 +184,7 @@ fn load(folder: &Path, plan: &Plan) -> Application {
             .unwrap_or_else(|| panic!("{:#?}", rules.problems)),
         models: Vec::new(),
         task: None,
+        plans: Vec::new(),
         injections: injected
             .injections
             .unwrap_or_else(|| panic!("{problems:#?}")),

@@ -38,10 +38,21 @@ impl StandIn<'_> {
                 ..
             } => (component, Task::Replace(secondary)),
             Action::Adapt { component } => (component, Task::Adapt),
+            // What a tree comes to nobody can know; supposed is that it does what it is for.
+            Action::Handle { component, .. } => (component, Task::Reset),
             Action::Stop { component } => (component, Task::Stop),
             Action::Destroy { component } => (component, Task::Destroy),
             Action::EmergencyStop => return self.stop_in_emergency(planned.id),
         };
+        if component >= self.components.len() {
+            // A behaviour tree, whose ticks are not played: what is asked of it is done.
+            let outcome = ActionOutcome::Done {
+                incarnation: 0,
+                note: String::new(),
+            };
+            let action = planned.id;
+            return self.observe(Observation::Ended { action, outcome });
+        }
         let order = Order {
             action: Some(planned.id),
             component,

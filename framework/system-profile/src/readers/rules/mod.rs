@@ -23,6 +23,7 @@ pub(crate) use declared::{
     DeclaredMonitor, DeclaredName, DeclaredRules, DeclaredSecondary, DeclaredSource,
     DeclaredVoting, EntityKind,
 };
+pub(in crate::readers) use diagnosis::COMPONENT_SEVERITIES;
 
 /// The outermost element of a rule file.
 pub(crate) const RULES_ROOT: &str = "fault_rules";
@@ -116,7 +117,7 @@ pub(crate) fn component_elements(node: &Node<'_>, name: &Located<String>) -> Dec
         actuator,
         isolation: isolation::isolation(node),
         adapt: handling::adapt(node),
-        handle: handling::reference(node, "handle"),
+        handle: handling::handle(node),
     };
     // Evaluators and estimators belong to the task adaptation, which reads them itself.
     node.pass_over(&["evaluator", "estimator"]);

@@ -146,6 +146,7 @@ pub(super) fn load(folder: &Path) -> io::Result<Application> {
         specification,
         rules,
         models: Vec::new(),
+        plans: Vec::new(),
         injections,
         task: None,
     })
