@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod adaptation;
+mod adaptation_in_smoke;
 mod backtraces;
 mod bad_files;
 mod bad_libraries;

@@ -12,10 +12,10 @@ const SMOKE_NS: u64 = 4_400_000_000;
 const LOST_ERROR: f64 = 40.0;
 
 /// One tracked picture: when, matching error, column of the target.
-struct Tracked {
-    time_ns: u64,
-    error: f64,
-    column: f64,
+pub(crate) struct Tracked {
+    pub(crate) time_ns: u64,
+    pub(crate) error: f64,
+    pub(crate) column: f64,
 }
 
 fn drive(application: &str, seed: u64) -> Vec<Tracked> {
@@ -25,7 +25,7 @@ fn drive(application: &str, seed: u64) -> Vec<Tracked> {
     let seed = seed.to_string();
     let profile = repository().join(format!("profiles/applications/{application}.xml"));
     let arguments = ["--clock", "simulated", "--for", "12s", "--seed", &seed];
-    let _outcome = run
+    let _ended = run
         .run_file(
             &profile,
             &[&arguments[..], &["--record", recording]].concat(),
@@ -34,7 +34,7 @@ fn drive(application: &str, seed: u64) -> Vec<Tracked> {
     tracked(&file)
 }
 
-fn tracked(file: &Path) -> Vec<Tracked> {
+pub(crate) fn tracked(file: &Path) -> Vec<Tracked> {
     let messages = read(file).expect("the recording can be opened");
     let messages = messages.map(|message| message.expect("the recording is whole"));
     let number = |value: &serde_json::Value| value.as_f64().expect("a number");

@@ -96,8 +96,8 @@ impl System {
     ) -> Result<Self, StartError> {
         let began = Instant::now();
         let real = options.clock == ClockKind::Real;
-        let outside = options.supervised.as_ref();
-        let outside = outside.and_then(|it| it.world().cloned());
+        let supervised = options.supervised.clone();
+        let outside = supervised.as_ref().and_then(|it| it.world().cloned());
         let world = outside.or_else(|| simulation.map(|it| Arc::new(World::new(it, real))));
         let (mut recorder, recorded) = options.recorder();
         let (events, writer) = options.open_events(recorded)?;
@@ -121,14 +121,14 @@ impl System {
         let supervisor = Arc::new(supervisor);
         let (runners, calls) = missions::bind_all(&applications, &assembly, &supervisor)?;
         recording::play(&applications, &assembly, &environment)?;
-        let recorders = recorder.iter_mut();
-        recorders.for_each(|it| supervisor.record_models(it));
+        recorder
+            .iter_mut()
+            .for_each(|it| supervisor.record_models(it));
         let recording = recorder
-            .map(|it| recording::record(it, &applications, &assembly, &environment, &options))
-            .transpose()?;
+            .map(|it| recording::record(it, &applications, &assembly, &environment, &options));
+        let recording = recording.transpose()?;
         let meter = Arc::new(real_time::meter(&assembly.statuses, &assembly.executors));
-        let adaptations = adaptation::adapt(&applications, &assembly, &environment, &meter)
-            .map_err(StartError::Assembly)?;
+        let adaptations = adaptation::adapt(&applications, &assembly, &environment, &meter)?;
         let persistence = Persistence::new(&applications, &assembly.factories);
         let Assembly {
             components,
@@ -163,7 +163,7 @@ impl System {
             writer,
             recording,
         };
-        system.begin(executors, runners, adaptations, wanted)
+        system.begin(executors, adaptations, runners, wanted)
     }
 
     /// Why the run is over, if it is: waits at most `limit` for that. Rates and loads are counted

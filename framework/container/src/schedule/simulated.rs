@@ -1,6 +1,7 @@
 //! All executors on one thread, in simulated time.
 
 mod adapting;
+mod idling;
 mod playing;
 mod trees;
 
@@ -222,6 +223,11 @@ impl Work for Simulated {
             self.begin_trees();
             self.serve(lane);
             let next = self.next();
+            match self.adapt_if_due(next.map(|(time_ns, _)| time_ns), lane) {
+                Some(true) => continue,
+                Some(false) => return,
+                None => {}
+            }
             // What time brings comes before what is executed at that time.
             let tick_ns = self.supervisor.due_ns();
             if let Some(tick_ns) = tick_ns
@@ -244,11 +250,6 @@ impl Work for Simulated {
                 }
                 self.tick_trees();
                 continue;
-            }
-            match self.adapt_if_due(next.map(|(time_ns, _)| time_ns), lane) {
-                Some(true) => continue,
-                Some(false) => return,
-                None => {}
             }
             match self.play(next.map(|(time_ns, _)| time_ns), lane) {
                 Played::Nothing => {}
@@ -275,22 +276,6 @@ impl Work for Simulated {
         match index.and_then(|index| self.executors.get_mut(index)) {
             Some(executor) => executor.after_loss(&self.components, lost, &self.supervisor),
             None => mark_lost(&self.components, lost, false),
-        }
-    }
-}
-
-impl Simulated {
-    fn idle_until_end(&self, lane: &Lane) {
-        /// Steps in which an idle run goes to its end, so that it can be stopped.
-        const IDLE_STEP_NS: u64 = 100_000_000;
-        if self.end_ns == u64::MAX {
-            return;
-        }
-        while !lane.is_stopping() {
-            let next = self.environment.clock.now_ns().saturating_add(IDLE_STEP_NS);
-            if !self.advance(next) {
-                return;
-            }
         }
     }
 }

@@ -55,12 +55,6 @@ impl Supervisor {
                     checkpoint_before_ns: checkpoint_before.map(nanoseconds),
                 },
             ),
-            Action::Handle { tree, within, .. } => {
-                let task = Task::Handle {
-                    until_ns: now_ns.saturating_add(nanoseconds(*within)),
-                };
-                (*tree, task)
-            }
             Action::Adapt { component } => {
                 let requests = &self.environment.adaptation_requests;
                 if !requests.ask(*component, planned.id) {
@@ -68,6 +62,12 @@ impl Supervisor {
                     self.failed(planned.id, reason);
                 }
                 return;
+            }
+            Action::Handle { tree, within, .. } => {
+                let task = Task::Handle {
+                    until_ns: now_ns.saturating_add(nanoseconds(*within)),
+                };
+                (*tree, task)
             }
             Action::Stop { component } => (*component, Task::Stop),
             Action::Destroy { component } => (*component, Task::Destroy),

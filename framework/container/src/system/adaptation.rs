@@ -6,9 +6,11 @@ use system_model::task::Placement;
 use task_adaptation::Decider;
 
 use super::applications::{Applications, Part};
-use crate::adaptation::{Adaptation, Binding, Known, LocalRobot};
+use super::{StartError, System};
+use crate::adaptation::{Adaptation, AdaptationLane, Binding, Known, LocalRobot};
 use crate::assembly::{Assembly, AssemblyProblem};
 use crate::component::Environment;
+use crate::lane::Lane;
 use crate::status::Meter;
 
 /// Components that have a rung for a task in which they take no part.
@@ -41,7 +43,7 @@ pub(super) fn adapt(
     assembly: &Assembly,
     environment: &Arc<Environment>,
     meter: &Arc<Meter>,
-) -> Result<Vec<Adaptation>, Vec<AssemblyProblem>> {
+) -> Result<Vec<Adaptation>, StartError> {
     let (mut adaptations, mut problems) = (Vec::new(), Vec::new());
     if environment.score.is_some() {
         return Ok(adaptations);
@@ -74,6 +76,20 @@ pub(super) fn adapt(
     }
     match problems.is_empty() {
         true => Ok(adaptations),
-        false => Err(problems),
+        false => Err(StartError::Assembly(problems)),
+    }
+}
+
+impl System {
+    /// Starts the lane of an adaptation, where time is real.
+    pub(super) fn launch_adaptation(&mut self, adaptation: Adaptation) -> Result<(), StartError> {
+        let components = Arc::clone(&self.components);
+        let environment = Arc::clone(&self.environment);
+        let work = AdaptationLane::new(adaptation, components, environment);
+        let lane = Lane::new("adaptation", Box::new(work));
+        self.crew.start(&lane, || {})?;
+        // Components of its own it has none: those that it enters belong to their executors.
+        self.lanes.push((lane, Vec::new()));
+        Ok(())
     }
 }

@@ -6,14 +6,13 @@ mod shift;
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::adaptation::AttachedTask;
 use behavior_tree::Plan;
 use system_model::injection::Injection;
 use system_model::process_model::ProcessModel;
 use system_model::profile::Located;
 use system_model::rules::{DependencyRule, Entity, FaultRules};
 use system_model::specification::{ApplicationSpecification, ComponentSpecification};
-
-use crate::adaptation::AttachedTask;
 
 /// One application as it was loaded; everything in it counts components within the application.
 #[derive(Debug, Clone)]

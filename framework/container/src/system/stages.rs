@@ -13,7 +13,7 @@ use super::agenda::{Agenda, Failure, Step};
 use super::persistence::Persistence;
 use super::real_time::{self, WorldThread};
 use super::{BRING_UP_LIMIT, ClockKind, STOP_LIMIT, StartError, System};
-use crate::adaptation::{Adaptation, AdaptationLane};
+use crate::adaptation::Adaptation;
 use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::lane::{Lane, SETUP_TOKEN, remaining};
@@ -25,8 +25,8 @@ impl System {
     pub(super) fn begin(
         mut self,
         executors: Vec<Executor>,
-        runners: Vec<Runner>,
         adaptations: Vec<Adaptation>,
+        runners: Vec<Runner>,
         wanted: Receiver<usize>,
     ) -> Result<Self, StartError> {
         if let Err(error) = self.bring_up() {
@@ -34,7 +34,7 @@ impl System {
             let _log_error = self.close();
             return Err(error);
         }
-        if let Err(error) = self.launch(executors, runners, adaptations, wanted) {
+        if let Err(error) = self.launch(executors, adaptations, runners, wanted) {
             // What is on the disk is for the next try.
             self.persistence = Persistence::default();
             let _nothing_to_sum_up = self.stop("start_refused");
@@ -189,8 +189,8 @@ impl System {
     fn launch(
         &mut self,
         executors: Vec<Executor>,
-        runners: Vec<Runner>,
         adaptations: Vec<Adaptation>,
+        runners: Vec<Runner>,
         wanted: Receiver<usize>,
     ) -> Result<(), StartError> {
         self.environment.observations.report(Observation::Running);
@@ -233,15 +233,15 @@ impl System {
                 for executor in executors {
                     self.launch_executor(executor)?;
                 }
+                for adaptation in adaptations {
+                    self.launch_adaptation(adaptation)?;
+                }
                 if self.calls.is_used() {
                     self.launch_caller()?;
                 }
                 for runner in runners {
                     let environment = Arc::clone(&self.environment);
                     self.mission_threads.start(runner, environment)?;
-                }
-                for adaptation in adaptations {
-                    self.launch_adaptation(adaptation)?;
                 }
             }
         }
@@ -254,17 +254,6 @@ impl System {
         let work = Caller::new(calls, Arc::clone(&self.components), environment);
         let lane = Lane::new("tree calls", Box::new(work));
         self.crew.start(&lane, || {})?;
-        self.lanes.push((lane, Vec::new()));
-        Ok(())
-    }
-
-    fn launch_adaptation(&mut self, adaptation: Adaptation) -> Result<(), StartError> {
-        let components = Arc::clone(&self.components);
-        let environment = Arc::clone(&self.environment);
-        let work = AdaptationLane::new(adaptation, components, environment);
-        let lane = Lane::new("adaptation", Box::new(work));
-        self.crew.start(&lane, || {})?;
-        // Components of its own it has none: those that it enters belong to their executors.
         self.lanes.push((lane, Vec::new()));
         Ok(())
     }

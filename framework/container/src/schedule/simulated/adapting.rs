@@ -11,7 +11,10 @@ impl Simulated {
     /// if nothing was to be done; false if the run ends before.
     pub(super) fn adapt_if_due(&mut self, next_ns: Option<u64>, lane: &Lane) -> Option<bool> {
         let (adaptation, due_ns) = self.next_adaptation()?;
-        if next_ns.is_some_and(|next_ns| next_ns < due_ns) || self.is_over(next_ns) {
+        let others = [next_ns, self.tree_due_ns()];
+        let is_first = others.into_iter().flatten().all(|other| due_ns <= other);
+        let tick_ns = self.supervisor.due_ns();
+        if !is_first || tick_ns.is_some_and(|tick_ns| tick_ns <= due_ns) || self.is_over(next_ns) {
             return None;
         }
         if due_ns > self.environment.clock.now_ns() && !self.advance(due_ns) {
