@@ -2,9 +2,9 @@
 //! A task that fails though every component runs is done in another way.
 //!
 //! A task is attached to an application from outside ([`AttachedTask`]): components need not know.
-//! [`binding`] finds its names in the application; [`local`] listens to outputs, [`evaluation`] makes
-//! errors of what is heard, [`estimation`] lets fresh instances of what does not run work on current
-//! data, [`change`] goes from one way of doing the task to another. All of it is on a lane of its own
+//! `binding` finds its names in the application; `local` listens to outputs, `evaluation` makes
+//! errors of what is heard, `estimation` lets fresh instances of what does not run work on current
+//! data, `change` goes from one way of doing the task to another. All of it is on a lane of its own
 //! where time is real, else on the one thread.
 
 mod binding;

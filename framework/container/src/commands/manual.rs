@@ -211,10 +211,11 @@ Examples:
   steadfast tree show navigate.xml --stubs --format mermaid
   steadfast tree run navigate.xml --stubs --ticks 20 --answer IsStuck=FAILURE
   steadfast tree run mission.xml --stubs --tree Search --answer Approach=FAILURE:500
+  steadfast tree log events.jsonl --format mermaid
 
 Exit codes:
   0  no problem, or warnings only and no --strict; the tree is shown, or was ticked
-  1  problems: of a file, or of a script or a port in a tick
+  1  problems: of a file, or of a script or a port in a tick; an event file without a tree
   2  a file cannot be read";
 
 /// Of `schema`.

@@ -1,6 +1,7 @@
 //! `steadfast tree`: files of behaviour trees.
 
 mod drawing;
+mod log;
 mod trial;
 
 use std::io::{self, Write as _};
@@ -13,6 +14,7 @@ use system_profile::{FileReport, Severity, TreeOptions, TreeOutcome, load_trees}
 
 use super::check::{self, Format};
 use super::{exit_code, manual, output, problems};
+use log::LogArguments;
 use trial::TrialArguments;
 
 /// What `steadfast tree` is asked to do.
@@ -34,6 +36,9 @@ enum TreeCommand {
     /// Tick a tree in simulated time and print what changes
     #[command(after_long_help = manual::TREE)]
     Run(TrialArguments),
+    /// Tell or draw what the trees of a run did, from its event file
+    #[command(after_long_help = manual::TREE)]
+    Log(LogArguments),
 }
 
 /// How files of trees are read.
@@ -112,6 +117,7 @@ pub fn run(arguments: &TreeArguments) -> ExitCode {
         TreeCommand::Check(arguments) => check(arguments),
         TreeCommand::Show(arguments) => show(arguments),
         TreeCommand::Run(arguments) => trial::run(arguments),
+        TreeCommand::Log(arguments) => log::run(arguments),
     }
 }
 
