@@ -33,8 +33,6 @@ pub(super) struct Gathering {
     seen: HashSet<u64>,
     /// Incidents beyond [`MOST_INCIDENTS`].
     incidents_left_out: u64,
-    /// Trees, and nodes of trees, that have a row.
-    tree_rows: usize,
 }
 
 impl Gathering {
@@ -149,10 +147,10 @@ impl Gathering {
 
     fn change_tree(&mut self, row: String, t_ns: u64, to: &str) {
         let is_known = self.run.states.contains_key(&row);
-        if !is_known && self.tree_rows >= MOST_TREE_ROWS {
+        if !is_known && self.run.tree_rows >= MOST_TREE_ROWS {
             return;
         }
-        self.tree_rows += usize::from(!is_known);
+        self.run.tree_rows += usize::from(!is_known);
         self.run.states.entry(row).or_default().push(StateChange {
             t_ns,
             from: String::new(),

@@ -43,6 +43,8 @@ pub(super) struct Run {
     pub(super) events_lost: u64,
     /// Life-cycle states, in the order of time, by component.
     pub(super) states: BTreeMap<String, Vec<StateChange>>,
+    /// How many of those are trees and nodes of trees.
+    pub(super) tree_rows: usize,
     /// The last verdict of each fault.
     pub(super) faults: BTreeMap<FaultNumber, Fault>,
     /// Verdicts of faults for which there is no room.

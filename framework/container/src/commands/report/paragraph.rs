@@ -40,7 +40,7 @@ fn beginning(run: &Run) -> String {
     format!(
         "{} ran with {} for {}{time}{seed}. {ended}",
         name(run),
-        count(run.states.len(), "component"),
+        count(run.states.len() - run.tree_rows, "component"),
         at(to_ns.saturating_sub(from_ns)),
     )
 }
