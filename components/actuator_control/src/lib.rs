@@ -43,17 +43,7 @@ impl Component for ActuatorControl {
     }
 
     fn on_initialize(&mut self, context: &Context) -> Outcome {
-        let default = DifferentialDrive::default();
-        self.drive = DifferentialDrive {
-            wheel_radius_m: context.property_or("wheel_radius_m", default.wheel_radius_m)?,
-            track_m: context.property_or("track_m", default.track_m)?,
-            wheel_maximum_rpm: context
-                .property_or("wheel_maximum_rpm", default.wheel_maximum_rpm)?,
-        };
-        if !self.drive.is_possible() {
-            let message = format!("no robot has these measures, all above 0: {:?}", self.drive);
-            return Err(Failure::new(Status::INPUT_OUT_OF_RANGE, message));
-        }
+        self.drive = DifferentialDrive::of_properties(context)?;
         let timeout_ms = context.property_or("decision_timeout_ms", DECISION_TIMEOUT_MS)?;
         self.decision_timeout = Duration::from_millis(timeout_ms);
         Ok(())

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use component_sdk::prelude::*;
+
 use crate::port_data::MotionDecision;
 use crate::serial_line::MotionCommand;
 
@@ -28,8 +30,28 @@ impl Default for DifferentialDrive {
 }
 
 impl DifferentialDrive {
+    /// The measures in a component's properties, called like the fields; those of the reference robot
+    /// where there is none.
+    ///
+    /// # Errors
+    /// If a property is no number, or no robot has these measures.
+    pub fn of_properties(context: &Context) -> Result<Self, Failure> {
+        let default = Self::default();
+        let drive = Self {
+            wheel_radius_m: context.property_or("wheel_radius_m", default.wheel_radius_m)?,
+            track_m: context.property_or("track_m", default.track_m)?,
+            wheel_maximum_rpm: context
+                .property_or("wheel_maximum_rpm", default.wheel_maximum_rpm)?,
+        };
+        if !drive.is_possible() {
+            let message = format!("no robot has these measures, all above 0: {drive:?}");
+            return Err(Failure::new(Status::INPUT_OUT_OF_RANGE, message));
+        }
+        Ok(drive)
+    }
+
     /// Whether a robot can have these measures.
-    pub fn is_possible(&self) -> bool {
+    fn is_possible(&self) -> bool {
         [self.wheel_radius_m, self.track_m, self.wheel_maximum_rpm]
             .iter()
             .all(|measure| *measure > 0.0 && measure.is_finite())

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -69,7 +70,8 @@ pub(super) fn run(arguments: &LogArguments) -> ExitCode {
     match written {
         Ok(()) => ExitCode::from(exit_code::DONE),
         Err(failed) => {
-            eprintln!("steadfast tree: {}", failed.text);
+            // If nobody reads the text the exit code still tells.
+            let _unread = writeln!(io::stderr(), "steadfast tree: {}", failed.text);
             ExitCode::from(failed.code)
         }
     }
