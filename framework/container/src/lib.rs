@@ -20,6 +20,7 @@ pub mod injection;
 pub mod lane;
 pub mod library;
 pub mod metrics;
+pub mod network;
 pub mod outer_supervision;
 pub mod persistence;
 pub mod port;

@@ -25,6 +25,7 @@ use crate::component::{ComponentCell, Environment};
 use crate::event_log::{Event, EventWriter};
 use crate::lane::{Crew, Lane, remaining};
 use crate::library::PortDescription;
+use crate::network::{self, Network};
 use crate::recording::RecordingThread;
 use crate::status::{ComponentStatus, Meter};
 use crate::summary::Summary;
@@ -73,6 +74,8 @@ pub struct System {
     persistence: Persistence,
     writer: EventWriter,
     recording: Option<RecordingThread>,
+    /// Ends first: nothing comes in any more when components are stopped.
+    network: Option<Network>,
 }
 
 impl System {
@@ -94,6 +97,7 @@ impl System {
         let world = outside.or_else(|| simulation.map(|it| Arc::new(World::new(it, real))));
         let (mut recorder, recorded) = options.recorder();
         let (events, writer) = options.open_events(recorded)?;
+        let (events, verdicts) = network::hear(events, options.network.is_some());
         let environment = options.environment(events, world.clone());
         let applications = Applications::new(applications);
         let specification = &applications.specification;
@@ -106,6 +110,8 @@ impl System {
         )
         .map_err(StartError::Assembly)?;
         let names = specification.components.iter().map(|it| it.name.clone());
+        let network = options.network.take();
+        let ports = network::connect(network, &applications.firsts(), specification, &assembly);
         environment.injections.prepare(names, options.seed);
         let injections = options.injections(&applications.injections);
         inject(&injections, &assembly, &environment).map_err(StartError::Assembly)?;
@@ -119,6 +125,7 @@ impl System {
             .map(|it| recording::record(it, &applications, &assembly, &environment, &options));
         let recording = recording.transpose()?;
         let persistence = Persistence::new(&applications, &assembly.factories);
+        let network = network::enter(ports, &environment, verdicts)?;
         let Assembly {
             components,
             statuses,
@@ -149,6 +156,7 @@ impl System {
             persistence,
             writer,
             recording,
+            network,
         };
         system.begin(executors, wanted)
     }
@@ -178,6 +186,7 @@ impl System {
     /// Stops everything in order and says what the run came to.
     pub fn stop(mut self, reason: &'static str) -> (Summary, Option<std::io::Error>) {
         let mut summary = self.summary(reason);
+        drop(self.network.take());
         let deadline = Instant::now() + STOP_LIMIT;
         self.manager_threads.stop(&self.supervisor);
         for (lane, _) in &self.lanes {

@@ -7,6 +7,7 @@ mod files;
 pub(crate) mod injections;
 mod instances;
 mod manager;
+mod network;
 mod ports;
 mod references;
 pub(crate) mod rules;
@@ -14,6 +15,7 @@ pub(crate) mod rules;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
+use system_model::network::NetworkSpecification;
 use system_model::profile::{ApplicationProfile, CompositeProfile, Profile};
 use system_model::specification::{
     ApplicationSpecification, ComponentSpecification, ManagerConnection,
@@ -52,6 +54,8 @@ impl Default for LoadOptions {
 pub struct LoadOutcome {
     /// The application, if no file has an error and no reference dangles.
     pub specification: Option<ApplicationSpecification>,
+    /// The robot's place in the network, if the application has one; as sound as the specification.
+    pub network: Option<NetworkSpecification>,
     /// All problems of all files involved, file by file in the order they were opened.
     pub problems: Vec<Problem>,
 }
@@ -80,6 +84,7 @@ pub fn load_application(path: &Path, options: &LoadOptions) -> LoadOutcome {
     };
     LoadOutcome {
         specification: specification.filter(|_| assembly.is_sound()),
+        network: assembly.network.take().filter(|_| assembly.is_sound()),
         problems: assembly.files.problems(),
     }
 }
@@ -96,6 +101,7 @@ pub(crate) struct Assembly<'o> {
     open_composites: Vec<PathBuf>,
     instances: usize,
     dangling: bool,
+    network: Option<NetworkSpecification>,
     /// Where each of the components comes from, in the same order.
     sites: Vec<Site>,
     /// The composites that were expanded, and what the names of their members begin with.
@@ -114,6 +120,7 @@ impl<'o> Assembly<'o> {
             open_composites: Vec::new(),
             instances: 0,
             dangling: false,
+            network: None,
             sites: Vec::new(),
             expanded: Vec::new(),
         }
@@ -128,6 +135,9 @@ impl<'o> Assembly<'o> {
         let scope = self.members(file, &profile.subcomponents, "", "");
         self.connect(&scope, &profile.connections);
         self.coordinate(&scope, &profile.coordination);
+        let network = profile.network.as_deref();
+        let beside = profile.header.file.parent().unwrap_or(Path::new(""));
+        self.network = network.map(|network| self.network(&scope, network, beside));
         let world = profile
             .world
             .as_ref()

@@ -196,6 +196,12 @@ fn in_words(kind: &str, event: &Value) -> Option<String> {
             number(event, "without_container_us") as f64 / 1e6
         ),
         "container_given_up" => format!("{}; {}", field("seen"), field("judged")),
+        "robot" => format!(
+            "robot {}: {}: {}",
+            field("robot"),
+            field("change"),
+            field("message")
+        ),
         "target_reached" => "the robot has reached its target".to_owned(),
         _ => return None,
     })
