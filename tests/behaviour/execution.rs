@@ -189,3 +189,20 @@ fn composites_are_flattened() {
     }
     assert_eq!(outcome.logs("recorder"), ["received 100, last 100, gaps 0"]);
 }
+
+#[test]
+fn standard_output_has_the_result_alone_where_it_is_for_programs() {
+    let outcome = Application::new()
+        .with(&Member::new("counter", "counter"))
+        .run(&["--clock", "simulated", "--for", "50ms", "--format", "json"])
+        .ended_well();
+    let printed: serde_json::Value =
+        serde_json::from_str(&outcome.finished().stdout).expect("one JSON object");
+    assert_eq!(&printed, outcome.summary());
+    assert!(
+        outcome
+            .finished()
+            .stderr
+            .contains("counter: READY -> ACTIVE")
+    );
+}

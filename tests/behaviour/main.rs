@@ -1,6 +1,7 @@
 //! What Steadfast promises, seen from outside.
 #![forbid(unsafe_code)]
 
+mod adaptation;
 mod backtraces;
 mod bad_files;
 mod bad_libraries;
@@ -23,6 +24,7 @@ mod live_orders;
 mod live_view;
 mod manager_ports;
 mod memory;
+mod missions;
 mod new;
 mod persistence;
 mod ports;

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 use system_profile::Document;
-use tests::{Application, Finished, Member, Watched, artifacts, repository};
+use tests::{Application, Finished, Member, Watched, artifacts, assert_html, repository};
 
 /// A page is made in less than a second; a busy machine gets more.
 const LIMIT: Duration = Duration::from_secs(60);
@@ -105,6 +105,8 @@ fn every_fault_is_on_the_page() {
     let markup = page.split_once('\n').expect("a document type").1;
     let document = Document::from_bytes("report.html", markup.as_bytes());
     assert!(document.tree().is_some(), "{:?}", document.problems());
+
+    assert_html(&folder.join("report.html"));
 
     if let Some(browser) = browser(folder) {
         let shown = browser.open(&folder.join("report.html"));

@@ -26,7 +26,7 @@ fn drive(application: &str, seed: u64) -> Vec<Tracked> {
     let seed = seed.to_string();
     let profile = repository().join(format!("profiles/applications/{application}.xml"));
     let arguments = ["--clock", "simulated", "--for", "12s", "--seed", &seed];
-    let _ended = run
+    let _outcome = run
         .run_file(
             &profile,
             &[&arguments[..], &["--record", recording]].concat(),

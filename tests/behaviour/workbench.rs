@@ -4,7 +4,7 @@ use std::process::Command;
 use std::time::Duration;
 
 use serde_json::Value;
-use tests::{Application, Finished, Member, Watched, artifacts, repository};
+use tests::{Application, Finished, Member, Watched, artifacts, assert_html, repository};
 
 /// The whole table takes seconds in a build without optimisation.
 const LIMIT: Duration = Duration::from_secs(100);
@@ -164,6 +164,8 @@ fn the_table_flags_what_ends_in_nothing_and_whose_loss_stops_the_robot() {
     for forbidden in ["http://", "https://", "<script"] {
         assert!(!page.contains(forbidden), "the page needs {forbidden}");
     }
+    let application = Application::new();
+    assert_html(&application.write("table.html", &page));
 }
 
 #[test]

@@ -4,6 +4,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use container::adaptation::AdaptationRequests;
 use container::assembly::{Assembly, LibraryOptions, assemble};
 use container::clock::Clock;
 use container::component::Environment;
@@ -31,6 +32,7 @@ pub fn environment() -> (Arc<Environment>, EventWriter) {
         injections: Injections::default(),
         world: None,
         score: None,
+        adaptation_requests: AdaptationRequests::default(),
         busy: BusyTime::default(),
     };
     (Arc::new(environment), writer)

@@ -139,6 +139,9 @@ fn ports(library: &str) -> String {
         "counter" => data("output", "output"),
         "recorder" => data("input", "input"),
         "echo" => data("input", "input") + &data("output", "output"),
+        "refiner" => {
+            data("input", "input") + &data("output", "output") + &data("expected", "output")
+        }
         "low_pass" => data("raw", "input") + &data("smooth", "output"),
         "herald" => event("news", "output"),
         "listener" => event("news", "input"),

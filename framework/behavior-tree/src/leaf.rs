@@ -48,6 +48,11 @@ impl LeafContext<'_> {
         }
     }
 
+    /// Whether a port refers to an entry that can be written.
+    pub fn has_output(&self, port: &str) -> bool {
+        matches!(self.source(port), Some(Source::Entry(_)))
+    }
+
     /// Writes to the entry that a port refers to.
     ///
     /// # Errors

@@ -22,6 +22,7 @@
 mod blackboard;
 pub mod catalogue;
 mod compile;
+pub mod component_nodes;
 pub mod definition;
 mod execute;
 mod finding;

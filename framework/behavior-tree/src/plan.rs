@@ -67,6 +67,8 @@ pub struct NodeDescription {
     pub is_stub: bool,
     /// In the order of the node's declaration, else of the file; `None` where nothing was said.
     pub ports: Vec<(String, Option<String>)>,
+    /// Where the values of the ports stand that the file gives.
+    pub port_places: Vec<(String, Place)>,
     /// Pre- and post-conditions as written.
     pub conditions: Vec<(String, String)>,
     /// How deep it lies; the root is 0.
@@ -189,6 +191,26 @@ impl Plan {
     /// The nodes whose work somebody else does, each before those behind it in the file.
     pub fn leaves(&self) -> &[NodeId] {
         &self.leaves
+    }
+
+    /// What a port says before the first tick: a literal, or what an entry begins with (a sub-tree's
+    /// attribute, for instance). None if that is not known.
+    pub fn initial(&self, node: NodeId, port: &str) -> Option<&Value> {
+        let ports = &self.describe(node).ports;
+        let position = ports.iter().position(|(name, _)| name == port)?;
+        match self.nodes[node.index()].ports.get(position)? {
+            Source::Nothing => None,
+            Source::Literal(value) => Some(value),
+            Source::Entry(slot) => self.entries[*slot].initial.as_ref(),
+        }
+    }
+
+    /// Whether a port refers to an entry of a blackboard.
+    pub fn is_entry(&self, node: NodeId, port: &str) -> bool {
+        let ports = &self.describe(node).ports;
+        let position = ports.iter().position(|(name, _)| name == port);
+        let source = position.and_then(|it| self.nodes[node.index()].ports.get(it));
+        matches!(source, Some(Source::Entry(_)))
     }
 
     /// The keys of the outermost blackboard.

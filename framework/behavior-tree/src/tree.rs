@@ -119,6 +119,13 @@ impl Tree {
         }
     }
 
+    /// Forgets all that is running without telling anybody: after a panic in a leaf nobody can say what
+    /// that one's state is. The blackboards stay as they are.
+    pub fn abandon(&mut self) {
+        self.states.fill(State::default());
+        self.is_woken = false;
+    }
+
     /// Whether the last tick answered RUNNING only to let others work in between, so that the next
     /// may follow at once: a `Repeat` whose child completes at once does so after each cycle.
     pub fn is_woken(&self) -> bool {

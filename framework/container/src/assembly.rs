@@ -17,8 +17,8 @@ use system_model::specification::{
     ApplicationSpecification, ComponentSpecification, Place, PortKind,
 };
 
-pub(crate) use connect::EVENT_QUEUE;
 pub use connect::Link;
+pub(crate) use connect::{EVENT_QUEUE, wake_of};
 pub use factory::{Factory, Variant};
 use libraries::Libraries;
 

@@ -15,6 +15,7 @@ use serde::Serialize;
 use system_model::fault::Fault;
 use unfinished::open_at_end;
 
+use crate::adaptation::AdaptationRecord;
 use crate::outer_supervision::ContainerRestart;
 
 /// Events that may wait for the writer: more than a robot of a hundred components makes in a
@@ -103,6 +104,8 @@ pub enum Event {
         /// How old it is, in milliseconds by the machine's clock.
         age_ms: u64,
     },
+    /// A decision of self-adaptation has ended.
+    Adaptation(Box<AdaptationRecord>),
     /// What the fault manager made of a fault; the last one of an `id` counts.
     Verdict(Box<Verdict>),
     /// An executor did not finish its cycle within its period.
@@ -138,6 +141,24 @@ pub enum Event {
         seen: String,
         /// Why it was judged so.
         judged: String,
+    },
+    /// A behaviour tree has begun, ended, failed or was halted.
+    TreeState {
+        /// Its name.
+        tree: String,
+        /// What it did before: `waiting`, `running`, `success`, `failure`, `failed` or `stopped`.
+        from: &'static str,
+        /// What it does now.
+        to: &'static str,
+    },
+    /// Nodes of a behaviour tree have other states after a tick than they had before.
+    TreeNodes {
+        /// The tree's name.
+        tree: String,
+        /// Path and state of each.
+        nodes: Vec<(String, &'static str)>,
+        /// Further ones that are left out, so that a tree does not fill the record.
+        left_out: u64,
     },
     /// The robot has reached its target.
     TargetReached {

@@ -4,6 +4,7 @@
 //! `framework/ARCHITECTURE.md` has the map. Data goes one way: a specification is assembled into
 //! a running system; what happens in it becomes events.
 
+pub mod adaptation;
 pub mod assembly;
 pub mod backtrace;
 pub mod bare_wake;
@@ -20,6 +21,7 @@ pub mod injection;
 pub mod lane;
 pub mod library;
 pub mod metrics;
+pub mod mission;
 pub mod network;
 pub mod outer_supervision;
 pub mod persistence;

@@ -39,28 +39,39 @@ use team::Team;
 /// Verdicts that may wait to be told to other robots; what finds no room is on record here.
 const VERDICTS: usize = 256;
 
-/// Lets the network hear the verdicts of a log, if there is one.
-pub fn hear(events: EventLog, is_wanted: bool) -> (EventLog, Channel<(u64, Event)>) {
-    let (listener, verdicts) = bounded(VERDICTS);
-    (events.heard_by(is_wanted.then_some(listener)), verdicts)
+/// The place in the network of the application of this number, and the verdicts that go there.
+pub struct Place {
+    application: usize,
+    specification: NetworkSpecification,
+    verdicts: Channel<(u64, Event)>,
 }
 
-/// Connects the ports of one of the applications, which is given by its number, if it is in a network;
-/// `firsts` says with which component of the assembly each application begins.
-pub fn connect(
+/// Lets the network hear the verdicts of a log, if an application, given by its number, is in one.
+pub fn hear(
+    events: EventLog,
     network: Option<(usize, NetworkSpecification)>,
+) -> (EventLog, Option<Place>) {
+    let (listener, verdicts) = bounded(VERDICTS);
+    let events = events.heard_by(network.is_some().then_some(listener));
+    let place = network.map(|(application, specification)| Place {
+        application,
+        specification,
+        verdicts,
+    });
+    (events, place)
+}
+
+/// Connects the ports of an application that is in a network; `firsts` says with which component of
+/// the assembly each application begins.
+pub fn connect(
+    place: Option<Place>,
     firsts: &[usize],
     application: &ApplicationSpecification,
     assembly: &Assembly,
 ) -> Option<NetworkPorts> {
-    let (number, specification) = network?;
-    let first = firsts.get(number).copied().unwrap_or_default();
-    Some(NetworkPorts::connect(
-        specification,
-        first,
-        application,
-        assembly,
-    ))
+    let place = place?;
+    let first = firsts.get(place.application).copied().unwrap_or_default();
+    Some(NetworkPorts::connect(place, first, application, assembly))
 }
 
 /// Enters the network, if there are ports that lead into one.
@@ -70,15 +81,15 @@ pub fn connect(
 pub fn enter(
     ports: Option<NetworkPorts>,
     environment: &Arc<Environment>,
-    verdicts: Channel<(u64, Event)>,
 ) -> Result<Option<Network>, StartError> {
-    let entered = ports.map(|ports| ports.enter(environment, verdicts));
+    let entered = ports.map(|ports| ports.enter(environment));
     entered.transpose().map_err(StartError::Network)
 }
 
 /// The ports that lead into the network, connected, before anything of it is entered.
 pub struct NetworkPorts {
     specification: NetworkSpecification,
+    verdicts: Channel<(u64, Event)>,
     outputs: Outputs,
     inputs: RemoteInputs,
     holdings: Holdings,
@@ -103,12 +114,13 @@ struct Shared {
 
 impl NetworkPorts {
     /// Connects the ports. The specification counts components from `first` of the assembly's on.
-    pub fn connect(
-        mut specification: NetworkSpecification,
+    fn connect(
+        place: Place,
         first: usize,
         application: &ApplicationSpecification,
         assembly: &Assembly,
     ) -> Self {
+        let mut specification = place.specification;
         let inputs = specification
             .remote_inputs
             .iter_mut()
@@ -144,20 +156,17 @@ impl NetworkPorts {
         Self {
             holdings: Holdings::new(&specification, application, assembly),
             specification,
+            verdicts: place.verdicts,
             outputs,
             inputs,
         }
     }
 
-    /// Enters the network. `verdicts` are those of the fault manager, for the other robots.
+    /// Enters the network.
     ///
     /// # Errors
     /// When an address cannot be had, or the machine has no thread left.
-    pub fn enter(
-        self,
-        environment: &Arc<Environment>,
-        verdicts: Channel<(u64, Event)>,
-    ) -> Result<Network, NodeError> {
+    fn enter(self, environment: &Arc<Environment>) -> Result<Network, NodeError> {
         let incarnation = incarnation();
         let specification = self.specification;
         let node = Node::open(
@@ -185,7 +194,13 @@ impl NetworkPorts {
             wake: sending.wake(),
             threads: Vec::new(),
         };
-        let team = Team::new(node, inputs, verdicts, shared, specification.silence_limit);
+        let team = Team::new(
+            node,
+            inputs,
+            self.verdicts,
+            shared,
+            specification.silence_limit,
+        );
         network.start("network-send", move || sending.run())?;
         network.start("network-team", move || team.run())?;
         Ok(network)

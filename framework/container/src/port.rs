@@ -2,6 +2,7 @@
 //! neither side ever waits for the other.
 
 mod datum;
+mod identity;
 mod mailbox;
 pub mod overwriting_queue;
 mod pile;
@@ -13,6 +14,7 @@ use system_model::specification::QueuePolicy;
 
 use crossbeam::utils::CachePadded;
 pub use datum::Datum;
+pub use identity::ConnectionId;
 pub use mailbox::{MailReceiver, MailSender, Sent, mailbox};
 use overwriting_queue::{Reader, Writer};
 use pile::Pile;

@@ -28,6 +28,8 @@ pub struct ComponentStatus {
     variant: AtomicUsize,
     /// Of an instance that stands by, and is not seen.
     standby: bool,
+    /// A task is being done without it: it does not run, and is not missed.
+    dormant: AtomicBool,
     /// Bytes that its callbacks have allocated and not freed, where a rule asks.
     allocated_bytes: AtomicU64,
     /// Until when it is in a callback that hangs, in nanoseconds of a simulated clock.
@@ -61,6 +63,7 @@ impl ComponentStatus {
             in_host: AtomicBool::new(false),
             variant: AtomicUsize::new(0),
             standby: false,
+            dormant: AtomicBool::new(false),
             allocated_bytes: AtomicU64::new(0),
             hangs_until_ns: AtomicU64::new(0),
             misbehaved_ns: AtomicU64::new(0),
@@ -79,6 +82,15 @@ impl ComponentStatus {
     /// Whether it is one that stands by.
     pub fn is_standby(&self) -> bool {
         self.standby
+    }
+
+    /// Whether it does not run because a task is being done without it.
+    pub fn is_dormant(&self) -> bool {
+        self.dormant.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn set_dormant(&self, dormant: bool) {
+        self.dormant.store(dormant, Ordering::Relaxed);
     }
 
     /// Life-cycle state.

@@ -7,6 +7,7 @@ use robot_simulation::RobotSummary;
 use serde::Serialize;
 use system_model::life_cycle::LifeCycleState;
 
+use crate::adaptation::AdaptationSummary;
 use crate::recording::RecordingSummary;
 use crate::status::ComponentStatus;
 
@@ -22,6 +23,9 @@ pub struct Summary {
     /// The robot of the simulated world, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub robot: Option<RobotSummary>,
+    /// What self-adaptation has come to, if a task was watched over.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub adaptation: Option<AdaptationSummary>,
     /// What was recorded, if anything was.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub recording: Option<RecordingSummary>,
@@ -83,8 +87,9 @@ impl ComponentSummary {
 /// The application's state, from those of its components. `STOPPED`: none of them runs.
 pub fn application_state(components: &[Arc<ComponentStatus>]) -> &'static str {
     let is_active = |one: &&Arc<ComponentStatus>| one.state() == LifeCycleState::Active;
+    let dormant = components.iter().filter(|one| one.is_dormant()).count();
     match components.iter().filter(is_active).count() {
-        count if count == components.len() => "ACTIVE",
+        count if count + dormant >= components.len() => "ACTIVE",
         0 => "STOPPED",
         _ => "DEGRADED",
     }

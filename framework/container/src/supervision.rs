@@ -3,6 +3,7 @@
 mod effects;
 mod emergency;
 mod manager_ports;
+mod missions;
 mod models;
 mod monitors;
 pub(crate) mod obedience;

@@ -1,8 +1,10 @@
 //! Running applications: brought up in order, run, and stopped in order, each with a deadline.
 
+mod adaptation;
 mod agenda;
 mod applications;
 mod knowledge;
+mod missions;
 mod options;
 mod outcome;
 mod persistence;
@@ -20,11 +22,12 @@ use std::time::{Duration, Instant};
 use robot_simulation::Simulation;
 use system_model::specification::ApplicationSpecification;
 
-use crate::assembly::{Assembly, Link, assemble_together};
+use crate::assembly::{Link, assemble_together};
 use crate::component::{ComponentCell, Environment};
 use crate::event_log::{Event, EventWriter};
 use crate::lane::{Crew, Lane, remaining};
 use crate::library::PortDescription;
+use crate::mission::{Calls, MissionThreads, Runner, TreeStatus};
 use crate::network::{self, Network};
 use crate::recording::RecordingThread;
 use crate::status::{ComponentStatus, Meter};
@@ -71,6 +74,10 @@ pub struct System {
     left_behind: LeftBehind,
     supervisor: Arc<Supervisor>,
     manager_threads: ManagerThreads,
+    trees: Vec<Arc<TreeStatus>>,
+    mission_threads: MissionThreads,
+    /// What trees ask of services.
+    calls: Arc<Calls>,
     persistence: Persistence,
     writer: EventWriter,
     recording: Option<RecordingThread>,
@@ -92,12 +99,12 @@ impl System {
     ) -> Result<Self, StartError> {
         let began = Instant::now();
         let real = options.clock == ClockKind::Real;
-        let supervised = options.supervised.clone();
-        let outside = supervised.as_ref().and_then(|it| it.world().cloned());
+        let outside = options.supervised.as_ref();
+        let outside = outside.and_then(|it| it.world().cloned());
         let world = outside.or_else(|| simulation.map(|it| Arc::new(World::new(it, real))));
         let (mut recorder, recorded) = options.recorder();
         let (events, writer) = options.open_events(recorded)?;
-        let (events, verdicts) = network::hear(events, options.network.is_some());
+        let (events, network) = network::hear(events, options.network.take());
         let environment = options.environment(events, world.clone());
         let applications = Applications::new(applications);
         let specification = &applications.specification;
@@ -110,31 +117,25 @@ impl System {
         )
         .map_err(StartError::Assembly)?;
         let names = specification.components.iter().map(|it| it.name.clone());
-        let network = options.network.take();
         let ports = network::connect(network, &applications.firsts(), specification, &assembly);
         environment.injections.prepare(names, options.seed);
         let injections = options.injections(&applications.injections);
         inject(&injections, &assembly, &environment).map_err(StartError::Assembly)?;
         let (supervisor, wanted) =
             supervise(&applications, &assembly, &environment).map_err(StartError::Assembly)?;
+        let supervisor = Arc::new(supervisor);
+        let (runners, calls) = missions::bind_all(&applications, &assembly, &supervisor)?;
         recording::play(&applications, &assembly, &environment)?;
-        recorder
-            .iter_mut()
-            .for_each(|it| supervisor.record_models(it));
+        let recorders = recorder.iter_mut();
+        recorders.for_each(|it| supervisor.record_models(it));
         let recording = recorder
-            .map(|it| recording::record(it, &applications, &assembly, &environment, &options));
-        let recording = recording.transpose()?;
+            .map(|it| recording::record(it, &applications, &assembly, &environment, &options))
+            .transpose()?;
+        let meter = Arc::new(real_time::meter(&assembly.statuses, &assembly.executors));
+        let adaptations = adaptation::adapt(&applications, &assembly, &environment, &meter)
+            .map_err(StartError::Assembly)?;
         let persistence = Persistence::new(&applications, &assembly.factories);
-        let network = network::enter(ports, &environment, verdicts)?;
-        let Assembly {
-            components,
-            statuses,
-            executors,
-            interfaces,
-            links,
-            ..
-        } = assembly;
-        let meter = real_time::meter(&statuses, &executors);
+        let network = network::enter(ports, &environment)?;
         let system = Self {
             applications: applications.names(),
             specification: applications.specification,
@@ -142,23 +143,30 @@ impl System {
             environment,
             world,
             world_thread: None,
-            left_behind: components.iter().map(|_| AtomicBool::new(false)).collect(),
-            components: components.into(),
-            interfaces: interfaces.into(),
-            statuses,
-            meter: Arc::new(meter),
-            links: links.into(),
+            left_behind: assembly
+                .components
+                .iter()
+                .map(|_| AtomicBool::new(false))
+                .collect(),
+            components: assembly.components.into(),
+            interfaces: assembly.interfaces.into(),
+            statuses: assembly.statuses,
+            meter,
+            links: assembly.links.into(),
             began,
             crew: Crew::new()?,
             lanes: Vec::new(),
-            supervisor: Arc::new(supervisor),
+            supervisor,
             manager_threads: ManagerThreads::default(),
+            trees: runners.iter().map(Runner::status).collect(),
+            mission_threads: MissionThreads::default(),
+            calls,
             persistence,
             writer,
             recording,
             network,
         };
-        system.begin(executors, wanted)
+        system.begin(assembly.executors, runners, adaptations, wanted)
     }
 
     /// Why the run is over, if it is: waits at most `limit` for that. Rates and loads are counted
@@ -183,11 +191,17 @@ impl System {
         }
     }
 
+    /// The behaviour trees of all applications.
+    pub fn trees(&self) -> &[Arc<TreeStatus>] {
+        &self.trees
+    }
+
     /// Stops everything in order and says what the run came to.
     pub fn stop(mut self, reason: &'static str) -> (Summary, Option<std::io::Error>) {
         let mut summary = self.summary(reason);
         drop(self.network.take());
         let deadline = Instant::now() + STOP_LIMIT;
+        self.mission_threads.stop(deadline);
         self.manager_threads.stop(&self.supervisor);
         for (lane, _) in &self.lanes {
             lane.stop();

@@ -71,7 +71,7 @@ impl FaultManager {
 
     /// An action has ended.
     pub(crate) fn ended(&mut self, action: ActionId, outcome: ActionOutcome) {
-        if self.emergency_ended(action, &outcome) {
+        if self.emergency_ended(action, &outcome) || self.tree_ended(action, &outcome) {
             return;
         }
         let under_way = |work: &Work| work.id == action && work.ended.is_none();
@@ -90,9 +90,10 @@ impl FaultManager {
             (Some(Task::Recover), ActionOutcome::Done { incarnation, note }) => {
                 self.recovered(component, incarnation, note);
             }
-            (Some(Task::Recover), ActionOutcome::Failed { reason }) => {
+            (Some(Task::Recover | Task::Adapt), ActionOutcome::Failed { reason }) => {
                 self.recovery_failed(component, "failed", reason);
             }
+            (Some(Task::Adapt), ActionOutcome::Done { note, .. }) => self.adapted(component, note),
             (Some(Task::Stop | Task::Destroy), ActionOutcome::Done { note, .. }) => {
                 self.stop_ended(component, "done", note);
             }

@@ -44,6 +44,11 @@ impl Detectors {
             }
             detectors.add_helpers(members.start, scope);
         }
+        for application in &system.applications {
+            for tree in application.trees.clone() {
+                detectors.add_defaults(tree, &system.components[tree].rules);
+            }
+        }
         detectors
     }
 

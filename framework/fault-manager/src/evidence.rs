@@ -122,10 +122,13 @@ pub enum Evidence {
         /// What it is compared with.
         threshold: f64,
     },
-    /// Nothing: an operator ordered it.
+    /// Nothing: an operator ordered it, or a behaviour tree.
     Order {
         /// What, in words.
         order: String,
+        /// The tree; none for an operator.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        by: Option<String>,
     },
     /// A vote.
     Votes {

@@ -8,10 +8,14 @@ use crate::ladder::Rung;
 use crate::life::Wait;
 use crate::manager::FaultManager;
 use crate::plan::{Action, Effect};
-use crate::state::{Task, Work};
+use crate::state::{Condition, Down, Task, Work};
 use crate::stopping::Reach;
 use crate::verdict::{Cause, FaultId, FaultState};
 use crate::wording;
+
+/// A decision of the self-adaptation has bounds of its own, that add up to less: this is for one of
+/// which nothing is heard any more.
+const ADAPTATION_DEADLINE: Duration = Duration::from_secs(30);
 
 impl FaultManager {
     /// Plans what the severity of a root cause asks for.
@@ -47,6 +51,14 @@ impl FaultManager {
         }
         let index = fault.component;
         let before = fault.first_symptom();
+        if let Some(other) = self.handled_by_tree(index).filter(|other| *other != id) {
+            // What the tree does may be all that is needed: judged anew when it has ended.
+            if let Some(fault) = self.history.get_mut(id) {
+                fault.waits = Some(Wait::Root(other));
+                self.changed.insert(id);
+            }
+            return;
+        }
         let checkpoint_before = self.checkpoint_before(index, before);
         let component = &self.system.components[index];
         let rule = component.fault;
@@ -72,6 +84,8 @@ impl FaultManager {
                 let sentence = wording::action(&self.system, &action);
                 self.recover(id, action, sentence, self.now);
             }
+            Rung::HandleByTree => self.handle_by_tree(id, index),
+            Rung::Adapt => self.adapt(id, index),
             Rung::Exhausted => match rule.severity {
                 ApplicationSeverity::Ignore => self.stop(id, Reach::Component(index)),
                 ApplicationSeverity::Local => {
@@ -80,6 +94,36 @@ impl FaultManager {
                 ApplicationSeverity::Global => self.raise_emergency(id),
             },
         }
+    }
+
+    /// The task is to go on without a component.
+    fn adapt(&mut self, id: FaultId, component: usize) {
+        let action = Action::Adapt { component };
+        self.plan(id, wording::action(&self.system, &action));
+        let deadline = self.now.saturating_add(ADAPTATION_DEADLINE);
+        let number = self.act(id, action, self.now, deadline);
+        self.components[component].work = Some(Work {
+            id: number,
+            fault: id,
+            task: Task::Adapt,
+            deadline,
+            ended: None,
+            worked: None,
+        });
+    }
+
+    /// The task is done without a component: it is not needed, and neither is what it needs.
+    pub(crate) fn adapted(&mut self, component: usize, note: String) {
+        let Some(work) = self.components[component].work.take() else {
+            return;
+        };
+        self.note_outcome(work.fault, work.id, "done", note);
+        self.components[component].queue.clear();
+        self.components[component].down = Some(Down {
+            condition: Condition::Unneeded,
+            by: work.fault,
+        });
+        self.action_over(work.fault);
     }
 
     pub(crate) fn recover(
@@ -172,7 +216,9 @@ impl FaultManager {
             None => "not ended before the deadline",
         };
         match work.task {
-            Task::Recover => self.recovery_failed(component, "overdue", reason.to_owned()),
+            Task::Recover | Task::Adapt => {
+                self.recovery_failed(component, "overdue", reason.to_owned())
+            }
             Task::Stop | Task::Destroy => {
                 self.stop_ended(component, "overdue", reason.to_owned());
             }

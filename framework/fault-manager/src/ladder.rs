@@ -17,9 +17,13 @@ pub(crate) struct Ladder {
     in_vain: usize,
     /// Index of the secondary that is next.
     next_secondary: usize,
+    /// The task was to go on without it, and did not.
+    adapted: bool,
     /// A secondary was chosen and has not worked yet: there is nothing that a reset could bring
     /// back.
     replacing: bool,
+    /// When a tree was begun last.
+    handled_at: Option<Duration>,
 }
 
 /// What is to be tried next.
@@ -33,6 +37,10 @@ pub(crate) enum Rung {
     },
     /// The secondary of this index.
     Replace(usize),
+    /// A behaviour tree, once within the window.
+    HandleByTree,
+    /// The task is to go on without the component.
+    Adapt,
     /// Nothing that brings the component back.
     Exhausted,
 }
@@ -63,15 +71,30 @@ impl Ladder {
             self.replacing = true;
             return Rung::Replace(secondary);
         }
+        let in_vain = |at: &Duration| at.saturating_add(rule.window) > now;
+        if component.rules.handle.is_some() && !self.handled_at.as_ref().is_some_and(in_vain) {
+            self.handled_at = Some(now);
+            return Rung::HandleByTree;
+        }
+        if component.rules.adapt.is_some() && !self.adapted {
+            self.adapted = true;
+            return Rung::Adapt;
+        }
         Rung::Exhausted
     }
 
     /// An operator has looked at it: resets are counted from nothing. A secondary that was used up
     /// stays so.
     pub fn renew(&mut self) {
+        self.handled_at = None;
+        self.renew_resets();
+    }
+
+    fn renew_resets(&mut self) {
         self.resets.clear();
         self.in_vain = 0;
         self.replacing = false;
+        self.adapted = false;
     }
 
     /// Index of the secondary that is next; beyond the last one if all were used.
@@ -89,8 +112,9 @@ impl Ladder {
     /// works are counted from nothing.
     pub fn worked(&mut self) {
         self.in_vain = 0;
+        self.adapted = false;
         if self.replacing {
-            self.renew();
+            self.renew_resets();
         }
     }
 
@@ -107,162 +131,4 @@ impl Ladder {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::path::PathBuf;
-
-    use system_model::profile::Located;
-    use system_model::rules::{
-        ApplicationSeverity, ComponentRules, Preload, ResurrectRule, Secondary,
-    };
-    use system_model::specification::{
-        ComponentSpecification, ExecutionKind, ExecutionSemantics, Place, SchedulingPolicy,
-    };
-
-    use super::*;
-
-    fn component(reset: Option<bool>, retry_max: u32, window: u64, backoff: u64) -> Component {
-        let resurrect = reset.map(|reset| Located {
-            value: ResurrectRule {
-                reset,
-                backup: None,
-                persist: None,
-            },
-            place: Place::default(),
-        });
-        Component {
-            name: String::new(),
-            node: String::new(),
-            application: 0,
-            executor: 0,
-            periodic: true,
-            rules: ComponentRules {
-                resurrect,
-                ..ComponentRules::default()
-            },
-            fault: FaultRule {
-                retry_max,
-                window: Duration::from_millis(window),
-                backoff: Duration::from_millis(backoff),
-                severity: ApplicationSeverity::Local,
-            },
-            recovery_deadline: Duration::from_secs(1),
-        }
-    }
-
-    /// Failures at these times; the start of the reset that follows each, or that none does.
-    #[test]
-    fn resets_are_counted_within_the_window_and_wait_for_the_backoff() {
-        type Expected = &'static [(u64, Option<(u32, u64)>)];
-        let cases: [(&str, Component, Expected); 6] = [
-            (
-                "budget of two",
-                component(None, 2, 1000, 0),
-                &[
-                    (0, Some((1, 0))),
-                    (5, Some((2, 5))),
-                    (10, None),
-                    (999, None),
-                ],
-            ),
-            (
-                "the first one leaves the window",
-                component(Some(true), 2, 1000, 0),
-                &[
-                    (0, Some((1, 0))),
-                    (500, Some((2, 500))),
-                    (1000, Some((2, 1000))),
-                    (1400, None),
-                    (1500, Some((2, 1500))),
-                ],
-            ),
-            (
-                "backoff counts from the last reset, and not for the first of a window",
-                component(None, 3, 1000, 100),
-                &[
-                    (0, Some((1, 0))),
-                    (5, Some((2, 100))),
-                    (105, Some((3, 200))),
-                    (1250, Some((1, 1250))),
-                ],
-            ),
-            (
-                "forbidden",
-                component(Some(false), 3, 1000, 0),
-                &[(0, None)],
-            ),
-            ("no budget", component(None, 0, 1000, 0), &[(0, None)]),
-            (
-                "time stands still",
-                component(None, 2, 1000, 0),
-                &[(7, Some((1, 7))), (7, Some((2, 7))), (7, None)],
-            ),
-        ];
-        for (case, component, failures) in cases {
-            let mut ladder = Ladder::default();
-            for (at, expected) in failures {
-                let rung = ladder.climb(&component, Duration::from_millis(*at));
-                ladder.worked();
-                let reset = expected.map(|(attempt, not_before)| Rung::Reset {
-                    attempt,
-                    not_before: Duration::from_millis(not_before),
-                });
-                assert_eq!(rung, reset.unwrap_or(Rung::Exhausted), "{case}, at {at}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_replacement_that_never_worked_is_followed_by_the_next_secondary() {
-        let mut component = component(None, 1, 1000, 0);
-        component.rules.secondaries = vec![secondary(), secondary()];
-        let mut ladder = Ladder::default();
-        let mut climb = |worked: bool| {
-            if worked {
-                ladder.worked();
-            }
-            match ladder.climb(&component, Duration::ZERO) {
-                Rung::Reset { .. } => "reset".to_owned(),
-                Rung::Replace(secondary) => format!("secondary {secondary}"),
-                Rung::Exhausted => "exhausted".to_owned(),
-            }
-        };
-        let rungs = [false, false, false, true, false].map(&mut climb);
-        let expected = ["reset", "secondary 0", "secondary 1", "reset", "exhausted"];
-        assert_eq!(rungs, expected);
-    }
-
-    fn secondary() -> Secondary {
-        let specification = ComponentSpecification {
-            name: String::new(),
-            type_name: String::new(),
-            profile: PathBuf::new(),
-            place: Place::default(),
-            library: String::new(),
-            execution: ExecutionSemantics {
-                kind: ExecutionKind::Periodic,
-                period: Duration::from_millis(10),
-                priority: 0,
-                policy: SchedulingPolicy::Other,
-            },
-            properties: Vec::new(),
-            ports: Vec::new(),
-            node: String::new(),
-        };
-        Secondary {
-            specification,
-            preload: Preload::Cold,
-        }
-    }
-
-    #[test]
-    fn resets_in_vain_count_however_long_they_took() {
-        let component = component(None, 3, 1000, 0);
-        let mut ladder = Ladder::default();
-        for at in [0, 2_000, 4_000] {
-            let rung = ladder.climb(&component, Duration::from_millis(at));
-            assert!(matches!(rung, Rung::Reset { .. }), "at {at}");
-        }
-        let rung = ladder.climb(&component, Duration::from_millis(6_000));
-        assert_eq!(rung, Rung::Exhausted);
-    }
-}
+mod tests;

@@ -34,6 +34,7 @@ mod emergency;
 mod evidence;
 mod graph;
 mod handling;
+mod handling_by_tree;
 mod history;
 mod ladder;
 mod life;

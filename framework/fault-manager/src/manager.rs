@@ -8,6 +8,7 @@ use system_model::fault::FaultKind;
 use crate::detectors::Detectors;
 use crate::emergency::Emergency;
 use crate::graph::{Graph, Level};
+use crate::handling_by_tree::HandledByTree;
 use crate::history::History;
 use crate::life::Fault;
 use crate::observation::{Detector, DetectorId, DetectorKind, Observation};
@@ -29,6 +30,8 @@ pub struct FaultManager {
     pub(crate) history: History,
     pub(crate) components: Vec<ComponentState>,
     pub(crate) emergency: Option<Emergency>,
+    /// What trees are handling.
+    pub(crate) handled: Vec<HandledByTree>,
     pub(crate) running: bool,
     /// The latest time that was told.
     pub(crate) now: Duration,
@@ -56,6 +59,7 @@ impl FaultManager {
                 .map(|_| ComponentState::default())
                 .collect(),
             emergency: None,
+            handled: Vec::new(),
             running: false,
             now: Duration::ZERO,
             last_action: 0,
@@ -109,7 +113,12 @@ impl FaultManager {
             } => self.works(component, incarnation),
             Observation::Clear(None) => self.clear_all(),
             Observation::Clear(Some(id)) => self.clear(id),
-            Observation::Ordered { component, order } => self.ordered(component, order),
+            Observation::Ordered { component, order } => self.ordered(component, order, None),
+            Observation::OrderedByTree {
+                tree,
+                component,
+                order,
+            } => self.ordered(component, order, Some(tree)),
             Observation::Tick => {}
         }
         self.elapse(|due| due <= before);
@@ -125,7 +134,10 @@ impl FaultManager {
         let actions = actions.map(|work| work.deadline).min();
         let emergency = self.emergency.as_ref().and_then(Emergency::deadline);
         let lives = self.history.earliest(|fault| self.life_due(fault));
-        [actions, emergency, lives].into_iter().flatten().min()
+        [actions, emergency, lives, self.tree_due()]
+            .into_iter()
+            .flatten()
+            .min()
     }
 
     /// All faults that are not cleared, and the last of those that are, oldest first.
@@ -161,12 +173,24 @@ impl FaultManager {
 
     /// How many faults of a component are confirmed and not healed; orders of an operator are none.
     pub fn open_faults(&self, component: usize) -> usize {
-        let confirmed = |fault: &&Fault| {
+        self.present_faults(component, None).count()
+    }
+
+    /// The faults of a component, of a kind if one is named, that are confirmed and not healed; orders
+    /// are none.
+    pub fn present_faults<'a>(
+        &'a self,
+        component: usize,
+        kind: Option<&'a str>,
+    ) -> impl Iterator<Item = FaultId> + 'a {
+        let is_present = move |fault: &&Fault| {
             fault.component == component
                 && fault.verdict.state == FaultState::Confirmed
                 && fault.kind != FaultKind::OperatorOrder
+                && kind.is_none_or(|kind| fault.verdict.kind == kind)
         };
-        self.history.open().filter(confirmed).count()
+        let open = self.history.open().filter(is_present);
+        open.map(|fault| fault.verdict.id)
     }
 
     /// The verdict on what an operator ordered last for a component, unless it has been forgotten.

@@ -119,6 +119,15 @@ pub enum Observation {
         /// What.
         order: OperatorOrder,
     },
+    /// A behaviour tree orders something for a component, as an operator would.
+    OrderedByTree {
+        /// The tree's index, behind those of all components.
+        tree: usize,
+        /// Index of the component.
+        component: usize,
+        /// What.
+        order: OperatorOrder,
+    },
     /// Nothing but that time has passed.
     Tick,
 }

@@ -51,6 +51,7 @@ impl FaultManager {
         if let Some(work) = &state.work {
             let doing = match work.task {
                 Task::Recover => "recovered",
+                Task::Adapt => "done without",
                 Task::Stop | Task::Destroy => "stopped",
             };
             let fault = work.fault.0;
@@ -63,7 +64,8 @@ impl FaultManager {
     }
 
     /// Carries an order out, unless it makes no sense any more: then nothing happens.
-    pub(crate) fn ordered(&mut self, component: usize, order: OperatorOrder) {
+    /// `by`: the index of the behaviour tree that orders it; none for an operator.
+    pub(crate) fn ordered(&mut self, component: usize, order: OperatorOrder, by: Option<usize>) {
         if self.refusal(component, order).is_some() {
             return;
         }
@@ -82,7 +84,7 @@ impl FaultManager {
             },
         };
         let sentence = wording::action(&self.system, &action);
-        let Some(id) = self.open_order(component, &action, &sentence) else {
+        let Some(id) = self.open_order(component, &action, &sentence, by) else {
             return;
         };
         match action {
@@ -92,7 +94,9 @@ impl FaultManager {
                 let ladder = &mut self.components[component].ladder;
                 match action {
                     Action::Replace { secondary, .. } => ladder.replace(secondary),
-                    _ => ladder.renew(),
+                    // A tree that handles a fault is on a rung of that very ladder.
+                    _ if by.is_none() => ladder.renew(),
+                    _ => {}
                 }
                 self.recover(id, action, sentence, now);
             }
@@ -114,7 +118,13 @@ impl FaultManager {
     }
 
     /// Puts an order on record: a fault in nothing but that somebody wants something done.
-    fn open_order(&mut self, component: usize, action: &Action, words: &str) -> Option<FaultId> {
+    fn open_order(
+        &mut self,
+        component: usize,
+        action: &Action,
+        words: &str,
+        by: Option<usize>,
+    ) -> Option<FaultId> {
         let detector = self.detectors.find(component, &DetectorKind::Exception)?;
         let severity = match action {
             Action::Stop { .. } => ComponentSeverity::Stop,
@@ -140,6 +150,7 @@ impl FaultManager {
             runs: true,
             evidence: Evidence::Order {
                 order: words.to_owned(),
+                by: by.map(|tree| self.system.components[tree].name.clone()),
             },
         };
         let id = self.history.number();

@@ -58,6 +58,11 @@ pub enum Action {
         /// As for a reset.
         checkpoint_before: Option<Duration>,
     },
+    /// The task that it takes part in is done without it, in another way.
+    Adapt {
+        /// Index of the component.
+        component: usize,
+    },
     /// ACTIVE -> INACTIVE.
     Stop {
         /// Index of the component.
@@ -67,6 +72,15 @@ pub enum Action {
     Destroy {
         /// Index of the component.
         component: usize,
+    },
+    /// A behaviour tree is begun for a fault of the component; it ends as the tree does.
+    Handle {
+        /// Index of the component.
+        component: usize,
+        /// Index of the tree, behind those of all components.
+        tree: usize,
+        /// By then it must have ended.
+        within: Duration,
     },
     /// All actuators, each by its stop category; latched until [`Effect::Rearm`].
     EmergencyStop,
@@ -78,8 +92,10 @@ impl Action {
         match self {
             Self::Reset { component, .. }
             | Self::Replace { component, .. }
+            | Self::Adapt { component }
             | Self::Stop { component }
-            | Self::Destroy { component } => Some(*component),
+            | Self::Destroy { component }
+            | Self::Handle { component, .. } => Some(*component),
             Self::EmergencyStop => None,
         }
     }

@@ -29,6 +29,8 @@ pub enum Condition {
     Destroyed,
     /// It is in ERROR and nothing brings it back: its fault is to be ignored.
     Lost,
+    /// It is in ERROR, and its task is done without it.
+    Unneeded,
 }
 
 /// What is known of one component.
@@ -59,6 +61,8 @@ impl Down {
     pub fn level(self) -> Level {
         match self.condition {
             Condition::Destroyed => Level::Destroyed,
+            // Who needed it does something else now.
+            Condition::Unneeded => Level::Up,
             _ => Level::Stopped,
         }
     }
@@ -81,6 +85,7 @@ pub(crate) struct Work {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Task {
     Recover,
+    Adapt,
     Stop,
     Destroy,
 }
@@ -88,7 +93,8 @@ pub(crate) enum Task {
 impl ComponentState {
     /// The recovery under way, if that is what is under way.
     pub fn recovery(&self) -> Option<&Work> {
-        self.work.as_ref().filter(|work| work.task == Task::Recover)
+        let recovers = |work: &&Work| matches!(work.task, Task::Recover | Task::Adapt);
+        self.work.as_ref().filter(recovers)
     }
 
     /// Keeps a symptom for later; says whether one had to be given up for it. The oldest are kept,

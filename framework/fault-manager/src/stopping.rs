@@ -3,6 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
+use system_model::fault::FaultKind;
+
 use crate::graph::{Demand, Level};
 use crate::manager::FaultManager;
 use crate::plan::{Action, Effect};
@@ -31,7 +33,8 @@ impl FaultManager {
             }
             Reach::Application(application) => {
                 let stopped = &self.system.applications[application];
-                chosen.extend(stopped.members.clone().filter(|member| {
+                let members = stopped.members.clone().chain(stopped.trees.clone());
+                chosen.extend(members.filter(|member| {
                     let down = self.components[*member].down;
                     down.is_none_or(|down| down.condition == Condition::Lost)
                 }));
@@ -85,6 +88,9 @@ impl FaultManager {
     }
 
     fn bring_one_down(&mut self, id: FaultId, component: usize, demands: &BTreeMap<usize, Demand>) {
+        // Its own tree may stop it: that is part of how the fault is handled.
+        let by_other =
+            (self.history.get(id)).is_none_or(|fault| fault.kind != FaultKind::OperatorOrder);
         let demand = demands.get(&component);
         let destroy = demand.is_some_and(|demand| demand.level == Level::Destroyed);
         let action = if destroy {
@@ -105,6 +111,9 @@ impl FaultManager {
             let note = wording::overtaken(id);
             self.note_outcome(work.fault, work.id, "abandoned", note);
             self.action_over(work.fault);
+        }
+        if by_other {
+            self.overtake_tree(component, id);
         }
         self.settle_for(id, component);
     }

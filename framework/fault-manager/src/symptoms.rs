@@ -140,7 +140,9 @@ impl FaultManager {
             }
             return;
         }
-        if fault.waits.is_some() || state.down.is_some() || state.recovery().is_some() {
+        let is_handled = self.handled_by_tree(fault.component).is_some();
+        if fault.waits.is_some() || state.down.is_some() || state.recovery().is_some() || is_handled
+        {
             return;
         }
         match (cause, severity) {
@@ -271,6 +273,7 @@ impl FaultManager {
             }
         }
         self.emergency_overdue(&reached);
+        self.look_at_trees(&reached);
         self.settle();
         for id in self
             .history

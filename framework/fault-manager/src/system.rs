@@ -4,8 +4,11 @@
 use std::ops::Range;
 use std::time::Duration;
 
+use system_model::mission::DeclaredTree;
+use system_model::profile::Located;
 use system_model::rules::{
-    ComponentRules, DEFAULT_PERIODLESS_DEADLINE, DEFAULT_STARTUP, FaultRule, FaultRules,
+    ApplicationSeverity, ComponentRules, DEFAULT_PERIODLESS_DEADLINE, DEFAULT_STARTUP, FaultRule,
+    FaultRules,
 };
 use system_model::specification::{
     ApplicationSpecification, ComponentSpecification, ExecutionKind,
@@ -20,7 +23,8 @@ pub struct Scope {
     pub rules: FaultRules,
 }
 
-/// All applications of a container.
+/// All applications of a container. Behind the components of all of them come their behaviour trees,
+/// which are components to the fault manager: they fail, are begun anew and stopped.
 #[derive(Debug)]
 pub(crate) struct System {
     pub components: Vec<Component>,
@@ -35,6 +39,8 @@ pub(crate) struct Application {
     pub name: String,
     /// Its components' global indices.
     pub members: Range<usize>,
+    /// Its behaviour trees' global indices.
+    pub trees: Range<usize>,
 }
 
 /// One component.
@@ -66,7 +72,22 @@ impl System {
         for scope in scopes {
             system.add(scope);
         }
+        for (application, scope) in scopes.iter().enumerate() {
+            system.add_trees(application, &scope.specification.trees);
+        }
         system
+    }
+
+    /// The tree of an application by its name, as rules use it.
+    pub fn tree(&self, application: usize, name: &str) -> Option<usize> {
+        let application = &self.applications[application];
+        let is_it = |tree: &usize| {
+            let own = self.components[*tree].name.as_str();
+            // With several applications in one container names begin with that of the application.
+            let short = own.strip_prefix(application.name.as_str());
+            own == name || short.and_then(|it| it.strip_prefix('/')) == Some(name)
+        };
+        application.trees.clone().find(is_it)
     }
 
     fn add(&mut self, scope: &Scope) {
@@ -90,7 +111,20 @@ impl System {
         self.applications.push(Application {
             name: specification.name.clone(),
             members: first..self.components.len(),
+            trees: 0..0,
         });
+    }
+
+    /// The trees of an application, each as a component that nobody but the container runs.
+    fn add_trees(&mut self, application: usize, trees: &[DeclaredTree]) {
+        let first = self.components.len();
+        for tree in trees {
+            self.executors.push(vec![self.components.len()]);
+            let executor = self.executors.len() - 1;
+            self.components
+                .push(Component::of_tree(tree, application, executor));
+        }
+        self.applications[application].trees = first..self.components.len();
     }
 }
 
@@ -121,6 +155,35 @@ impl Component {
             fault: fault.map(|rule| rule.value).unwrap_or_default(),
             recovery_deadline: recovery_deadline(&rules, specification),
             rules,
+        }
+    }
+}
+
+impl Component {
+    /// A behaviour tree: its executor ticks it, and a reset begins it anew.
+    fn of_tree(tree: &DeclaredTree, application: usize, executor: usize) -> Self {
+        let rules = ComponentRules {
+            severity: Some(Located {
+                value: tree.severity,
+                place: tree.place.clone(),
+            }),
+            ..ComponentRules::default()
+        };
+        Self {
+            name: tree.name.clone(),
+            node: String::new(),
+            application,
+            executor,
+            periodic: false,
+            rules,
+            fault: FaultRule {
+                retry_max: tree.retry_max,
+                severity: ApplicationSeverity::Global,
+                ..FaultRule::default()
+            },
+            // An order is taken between two ticks.
+            recovery_deadline: (tree.tick + tree.tick_deadline)
+                .saturating_add(DEFAULT_PERIODLESS_DEADLINE),
         }
     }
 }

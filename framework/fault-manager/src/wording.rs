@@ -20,8 +20,12 @@ pub(crate) fn action(system: &System, action: &Action) -> String {
             let other = &secondaries[*secondary].specification.type_name;
             format!("replace {} by {other}", name(*component))
         }
+        Action::Adapt { component } => format!("do the task without {}", name(*component)),
         Action::Stop { component } => format!("stop {}", name(*component)),
         Action::Destroy { component } => format!("destroy {}", name(*component)),
+        Action::Handle {
+            component, tree, ..
+        } => format!("handle {} by tree {}", name(*component), name(*tree)),
         Action::EmergencyStop => "emergency stop".to_owned(),
     }
 }

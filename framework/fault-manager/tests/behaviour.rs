@@ -15,5 +15,7 @@ mod ladder;
 mod life;
 #[path = "behaviour/operator.rs"]
 mod operator;
+#[path = "behaviour/trees.rs"]
+mod trees;
 #[path = "behaviour/what_if.rs"]
 mod what_if;

@@ -10,7 +10,7 @@ mod navigation;
 mod vision;
 
 pub use board::{EncoderTicks, MotorCommand, Range, RangeReport, WheelOdometry};
-pub use navigation::{MotionDecision, ObstacleReport};
+pub use navigation::{GoalChoice, MotionDecision, ObstacleReport};
 pub use vision::{
     DetectedObject, IMAGE_HEIGHT, IMAGE_PIXEL_BYTES, IMAGE_WIDTH, Image, TrackedTarget,
     TurnReference,

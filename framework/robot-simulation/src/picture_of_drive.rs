@@ -187,7 +187,7 @@ fn path(simulation: &Simulation, sheet: &Sheet) -> Group {
         .set("font-size", 11)
         .set("stroke", "white")
         .set("stroke-width", 3)
-        .set("paint-order", "stroke");
+        .set("style", "paint-order: stroke");
         group.add(dot).add(label)
     })
 }

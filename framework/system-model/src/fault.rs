@@ -52,6 +52,10 @@ pub enum FaultKind {
     ProcessModel,
     /// A voter's source disagrees with the others.
     VotingDissent,
+    /// A node of a behaviour tree could not do its work.
+    TreeError,
+    /// A tick of a behaviour tree did not end before its deadline, or goes round in circles.
+    TickOverrun,
     /// Nothing went wrong: an operator ordered something.
     OperatorOrder,
 }
@@ -83,6 +87,8 @@ impl FaultKind {
             Self::MemoryExceeded => "memory_exceeded",
             Self::ProcessModel => "process_model",
             Self::VotingDissent => "voting_dissent",
+            Self::TreeError => "tree_error",
+            Self::TickOverrun => "tick_overrun",
             Self::OperatorOrder => "operator_order",
         }
     }

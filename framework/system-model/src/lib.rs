@@ -9,6 +9,7 @@ pub mod data_type;
 pub mod fault;
 pub mod injection;
 pub mod life_cycle;
+pub mod mission;
 pub mod network;
 pub mod process_model;
 pub mod profile;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use crate::mission::DeclaredTree;
 use crate::specification::{ExecutionSemantics, Place, PortDirection, PortKind, PortSpecification};
 
 /// A value and the place it was read from.
@@ -132,6 +133,19 @@ pub struct ApplicationProfile {
     pub world: Option<Located<String>>,
     /// How the robot enters the network.
     pub network: Option<Box<NetworkProfile>>,
+    /// Behaviour trees, in document order.
+    pub trees: Vec<TreeReference>,
+}
+
+/// `tree`: a behaviour tree that acts on the application's components.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TreeReference {
+    /// File of the tree.
+    pub file: Located<String>,
+    /// ID of the tree in it; without it the one that the file names.
+    pub main: Option<Located<String>>,
+    /// All else.
+    pub declared: DeclaredTree,
 }
 
 /// `network`: how a robot enters the network, and which ports lead into it.

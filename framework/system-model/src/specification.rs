@@ -6,6 +6,8 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use crate::mission::DeclaredTree;
+
 /// A place in a file that a person wrote.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct Place {
@@ -44,6 +46,8 @@ pub struct ApplicationSpecification {
     pub coordination: Vec<(usize, usize)>,
     /// The simulated world that the application drives in (`<world><reference>`), if any.
     pub world: Option<PathBuf>,
+    /// Its behaviour trees, in document order.
+    pub trees: Vec<DeclaredTree>,
 }
 
 /// One component instance.

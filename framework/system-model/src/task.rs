@@ -4,11 +4,18 @@
 //! Names have been resolved: components, robots and resources are numbered as their lists in
 //! [`TaskSpecification`] are.
 
+mod attachment;
 mod options;
 
+pub use attachment::{
+    Attachment, ContainerFigure, DEFAULT_EVALUATION_PERIOD, Estimator, Evaluator, LinkPorts,
+    QualityAttribute, ResourceSensor,
+};
 pub use options::{
     DEFAULT_CANDIDATE_LIMIT, DecisionOptions, GenerationOptions, HopCount, QualityPreferences,
 };
+
+use crate::profile::Located;
 
 /// Position in [`TaskSpecification::components`].
 pub type ComponentIndex = usize;
@@ -125,6 +132,8 @@ pub struct TaskLink {
     pub to: ComponentIndex,
     /// Components that are put in between where they are used, in this order; none is essential.
     pub through: Vec<ComponentIndex>,
+    /// Its ports in a running application.
+    pub ports: LinkPorts,
 }
 
 /// A resource, such as processor time, memory, battery power or area of an accelerator.
@@ -145,6 +154,8 @@ pub struct TaskRobot {
     pub name: String,
     /// Re_i: what the task may use of each resource, by [`ResourceIndex`]; 0 where it has none.
     pub available: Vec<f64>,
+    /// Resources of which a port of its application tells how much it has.
+    pub sensors: Vec<Located<ResourceSensor>>,
     /// What can run on it, each component once.
     pub instances: Vec<TaskInstance>,
 }
@@ -158,6 +169,8 @@ pub struct TaskInstance {
     pub demand: Vec<f64>,
     /// P_cf where it is known beforehand; the first whose conditions hold counts.
     pub estimates: Vec<GivenEstimate>,
+    /// What it is in a running application.
+    pub attachment: Attachment,
 }
 
 /// A functional error that is known beforehand.

@@ -59,6 +59,8 @@ pub fn check_file(path: &Path, options: &LoadOptions) -> Vec<FileReport> {
     let mut reports = vec![report(&file)];
     let others = assembly.files.in_order().iter().skip(1).map(report);
     reports.extend(others.filter(|report| !report.problems.is_empty()));
+    let trees = assembly.tree_files.into_iter();
+    reports.extend(trees.filter(|report| !report.problems.is_empty()));
     reports
 }
 

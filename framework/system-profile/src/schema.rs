@@ -93,6 +93,7 @@ const FILES: &[(&str, &str)] = files![
     "profiles/schema/service-type.xsd",
     "profiles/schema/steadfast.xsd",
     "profiles/schema/system.xsd",
+    "profiles/schema/task-attachment.xsd",
     "profiles/schema/task-robots.xsd",
     "profiles/schema/task.xsd",
     "profiles/schema/world.xsd",

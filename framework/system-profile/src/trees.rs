@@ -40,6 +40,15 @@ pub struct TreeOutcome {
 
 /// Loads a file of trees and looks through all that is in it.
 pub fn load_trees(path: &Path, options: &TreeOptions) -> TreeOutcome {
+    load_trees_for(path, options, &|_plan| Vec::new())
+}
+
+/// As [`load_trees`], with what else somebody finds in the plan.
+pub(crate) fn load_trees_for(
+    path: &Path,
+    options: &TreeOptions,
+    look: &dyn Fn(&Plan) -> Vec<Finding>,
+) -> TreeOutcome {
     let mut files = Files::default();
     files.open(path);
     let own = files.opened.len();
@@ -65,8 +74,12 @@ pub fn load_trees(path: &Path, options: &TreeOptions) -> TreeOutcome {
             Err(reason) => (None, Some(reason)),
         },
     };
+    let found: Vec<Finding> = plan.iter().flat_map(look).collect();
+    for finding in &found {
+        files.report(finding);
+    }
     TreeOutcome {
-        plan,
+        plan: plan.filter(|_| !found.iter().any(|finding| finding.is_error)),
         undecided,
         files: files.opened.iter().map(report).collect(),
     }

@@ -58,6 +58,8 @@ fn files_in(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).expect("a folder");
     let paths = entries.map(|entry| entry.expect("an entry").path());
     let files = paths.flat_map(|path| match path.is_dir() {
+        // Behaviour trees are another format, and read with the application that has them.
+        true if path.ends_with("trees") => Vec::new(),
         true => files_in(&path),
         false => vec![path],
     });

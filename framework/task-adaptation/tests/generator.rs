@@ -81,6 +81,7 @@ fn task(shape: &Shape) -> TaskSpecification {
         from: *from,
         to: *to,
         through: (shape.components..all).collect(),
+        ports: system_model::task::LinkPorts::default(),
     }));
     if shape.excludes && shape.optional > 1 {
         task.exclusions = vec![(shape.components..all).collect()];

@@ -1,43 +1,16 @@
 //! The `mcap` package of PyPI reads what we write.
 
-use std::io::Write as _;
 use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
 use serde_json::{Value, json};
-use tests::{Watched, repository};
+use tests::{Watched, python, repository};
 
 use super::counting;
 
 /// Reads ten thousand messages in a second; a busy machine gets more.
 const READ_LIMIT: Duration = Duration::from_secs(120);
-
-/// Names the interpreter that has the package; where it is set it must work.
-const PYTHON: &str = "STEADFAST_PYTHON";
-
-/// An interpreter with the package. Without one, and without the variable, the test says that it is
-/// left out.
-fn python() -> Option<String> {
-    let named = std::env::var(PYTHON).ok();
-    let python = named.clone().unwrap_or_else(|| "python3".to_owned());
-    let probed = Command::new(&python)
-        .args(["-c", "import mcap.reader"])
-        .output();
-    let works = probed.is_ok_and(|it| it.status.success());
-    assert!(
-        works || named.is_none(),
-        "{PYTHON}={python} has no package 'mcap'"
-    );
-    if !works {
-        // Past the test harness, which would keep it to itself.
-        let _unread = writeln!(
-            std::io::stderr(),
-            "LEFT OUT: {python} has no package 'mcap' (pip install mcap, or set {PYTHON})"
-        );
-    }
-    works.then_some(python)
-}
 
 fn decoded(python: &str, file: &Path, extent: &str) -> Value {
     let mut command = Command::new(python);
@@ -59,7 +32,9 @@ fn count(topics: &Value) -> usize {
 
 #[test]
 fn decodes_schemas_events_diagnostics_and_data() {
-    let Some(python) = python() else { return };
+    let Some(python) = python("mcap") else {
+        return;
+    };
     let application = counting();
     let file = application.folder().join("run.mcap");
     let path = file.to_str().expect("a path of this test");
@@ -108,7 +83,9 @@ fn decodes_schemas_events_diagnostics_and_data() {
 
 #[test]
 fn reads_a_file_that_was_cut() {
-    let Some(python) = python() else { return };
+    let Some(python) = python("mcap") else {
+        return;
+    };
     let application = counting();
     let file = application.folder().join("run.mcap");
     let path = file.to_str().expect("a path of this test");

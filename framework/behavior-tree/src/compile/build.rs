@@ -355,6 +355,9 @@ fn describe(
         class: resolved.class,
         is_stub: resolved.is_stub,
         ports,
+        port_places: port_attributes(node)
+            .map(|it| (text(&it.name), it.value.place.clone()))
+            .collect(),
         conditions: attributes
             .filter(|it| is_condition(&it.name.value))
             .map(|it| (text(&it.name), text(&it.value)))

@@ -7,6 +7,7 @@ mod scope;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::component_nodes;
 use crate::definition::{
     Direction, Format, NodeClass, NodeDefinition, NodeModel, TreeDefinition, TreeFile,
 };
@@ -46,6 +47,10 @@ impl<'a> Library<'a> {
             models: BTreeMap::new(),
         };
         let mut findings = Vec::new();
+        let models = component_nodes::models().iter();
+        let own: BTreeMap<&'a str, &'a NodeModel> = models
+            .map(|model| (model.id.value.as_str(), model))
+            .collect();
         for file in files {
             for tree in &file.trees {
                 let id = tree.id.value.as_str();
@@ -62,6 +67,9 @@ impl<'a> Library<'a> {
             for model in &file.models {
                 library.models.entry(&model.id.value).or_insert(model);
             }
+        }
+        for (id, model) in own {
+            library.models.entry(id).or_insert(model);
         }
         (library, findings)
     }

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use component_sdk::expansion::descriptor;
 use component_sdk::prelude::*;
+use container::adaptation::AdaptationRequests;
 use container::clock::Clock;
 use container::component::{
     Component as Running, ComponentCell, DataInput, DataOutput, Environment, PortEnd, Services,
@@ -181,6 +182,7 @@ fn time_cycles(length: usize, count: u64, monitored: bool) -> Duration {
         injections: Injections::default(),
         world: None,
         score: None,
+        adaptation_requests: AdaptationRequests::default(),
         busy: BusyTime::default(),
     });
     let mut executor = Executor::new(

@@ -75,7 +75,10 @@ pub(super) fn introduce(components: &[Arc<ComponentCell>], executors: &[Executor
 }
 
 /// What wakes the executor of a component, and whether data do.
-fn wake_of(executors: &[Executor], component: usize) -> Option<(Arc<Wake>, ExecutionKind)> {
+pub(crate) fn wake_of(
+    executors: &[Executor],
+    component: usize,
+) -> Option<(Arc<Wake>, ExecutionKind)> {
     executors
         .iter()
         .find(|executor| {

@@ -51,6 +51,7 @@ Examples:
   steadfast run application.xml --rules rules.xml --inject injections.xml --events events.jsonl
   steadfast run navigation.xml mapping.xml --library-path target/release
   steadfast run application.xml --supervised --restarts 3
+  steadfast run application.xml --clock simulated --for 30s --format json > result.json
 
 Exit codes:
     0  the run ended: target reached, duration elapsed, or stopped by Ctrl-C

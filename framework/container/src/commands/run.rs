@@ -11,6 +11,7 @@ mod observers;
 mod recording;
 mod report;
 mod supervised;
+mod tasks;
 mod words;
 
 use std::io::{self, IsTerminal as _, Write as _};
@@ -27,7 +28,7 @@ use crossbeam::channel::bounded;
 use robot_simulation::Simulation;
 use system_profile::{Problem, load_world};
 
-use super::problems;
+use super::{output, problems};
 use applications::Sources;
 pub(super) use failure::{Failed, exit_code, refused, unwritable};
 pub(super) use libraries::{libraries, library_folders};
@@ -88,6 +89,9 @@ pub struct RunArguments {
     /// Remove the checkpoints of a run that died, instead of going on from them
     #[arg(long)]
     fresh: bool,
+    /// How the result is printed
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    format: Format,
     #[command(flatten)]
     observers: ObserverArguments,
     #[command(flatten)]
@@ -102,6 +106,15 @@ enum ClockArgument {
     Real,
     /// As fast as it goes; the same seed gives the same events
     Simulated,
+}
+
+/// How the result is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// What happens, line by line, and a table in the end
+    Human,
+    /// What the run came to as one JSON object, as in --summary; what happens goes to standard error
+    Json,
 }
 
 impl RunArguments {
@@ -164,7 +177,7 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
     };
     let started = System::start(applications, simulation, options);
     let system = started.map_err(|error| refused(&error))?;
-    let mut watcher = Watcher::new(system.name(), lines);
+    let mut watcher = Watcher::new(system.name(), lines, arguments.format == Format::Json);
     let server = listen(&system, &watcher);
     let observers = observers.start(&system, &watcher);
     let reason = loop {
@@ -203,11 +216,14 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
 }
 
 fn conclude(arguments: &RunArguments, summary: &Summary) -> Result<(), Failed> {
+    let text = serde_json::to_string_pretty(summary)
+        .map_err(|error| unwritable(arguments.summary.as_deref(), &error.into()))?
+        + "\n";
     if let Some(path) = &arguments.summary {
-        let mut text = serde_json::to_vec_pretty(summary)
-            .map_err(|error| unwritable(Some(path), &error.into()))?;
-        text.push(b'\n');
-        write(path, &text)?;
+        write(path, text.as_bytes())?;
+    }
+    if arguments.format == Format::Json {
+        return output::write(None, &text);
     }
     let picture = arguments.picture.as_deref();
     // A closed pipe: whoever reads has seen enough.

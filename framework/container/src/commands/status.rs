@@ -1,6 +1,6 @@
 //! `steadfast status`: how a running application is.
 
-mod text;
+pub(super) mod text;
 
 use std::process::ExitCode;
 

@@ -37,6 +37,19 @@ impl Component {
         self.services.critical().map(|memory| memory.size())
     }
 
+    /// A copy of its registered memory, if it has registered any.
+    pub fn critical_copy(&self) -> Option<Vec<u8>> {
+        let memory = self.services.critical_memory()?;
+        let mut bytes = vec![0; memory.size()];
+        memory.copy_to(&mut bytes).then_some(bytes)
+    }
+
+    /// Fills its registered memory; whether it has registered so much.
+    pub fn set_critical(&mut self, bytes: &[u8]) -> bool {
+        let memory = self.services.critical();
+        memory.is_some_and(|memory| memory.size() == bytes.len() && memory.copy_from(bytes))
+    }
+
     /// What a run that died has left to it: restored by [`Self::inherit`]. Does nothing if no
     /// checkpoints are taken.
     pub fn set_inheritance(&mut self, inheritance: Inheritance) {

@@ -13,6 +13,7 @@ use component_abi::Status;
 use system_model::fault::{Fault, FaultKind};
 
 use super::port_end::{Inbox, PortEnd};
+use crate::adaptation::AdaptationRequests;
 use crate::clock::Clock;
 use crate::device::Devices;
 use crate::event_log::EventLog;
@@ -45,6 +46,8 @@ pub struct Environment {
     pub world: Option<Arc<World>>,
     /// The recording that is played instead of components, if one is.
     pub score: Option<Arc<Score>>,
+    /// Components without which a task is to go on.
+    pub adaptation_requests: AdaptationRequests,
     /// For how long a component keeps its executor busy, in simulated time.
     pub busy: BusyTime,
 }

@@ -1,6 +1,7 @@
 //! How a running system is, for an operator.
 
 use std::ops::Range;
+use std::time::Duration;
 
 use fault_manager::Condition;
 use system_model::rules::Preload;
@@ -9,10 +10,11 @@ use system_model::specification::{PortDirection, PortKind, PortReference};
 use super::RunningSystem;
 use super::view::{
     ComponentInfo, ComponentView, ContainerView, FaultView, LinkView, PortView, StandbyView,
-    SystemView, condition_name, level,
+    SystemView, TreeView, condition_name, level,
 };
 use crate::assembly::Link;
 use crate::library::PortDescription;
+use crate::mission::TreeStatus;
 use crate::summary::{ComponentSummary, application_state};
 use crate::supervision::Overview;
 
@@ -42,6 +44,9 @@ impl RunningSystem {
             verdicts_recorded: overview.recorded,
             container: self.container(),
             components: (0..self.statuses.len()).map(component).collect(),
+            trees: (self.trees.iter())
+                .map(|tree| (tree.name.clone(), tree_view(tree)))
+                .collect(),
         }
     }
 
@@ -200,5 +205,18 @@ impl RunningSystem {
                 .map(|link| link.drops.count())
                 .sum(),
         }
+    }
+}
+
+fn tree_view(tree: &TreeStatus) -> TreeView {
+    let running = tree.running().into_iter();
+    let leaves = running.filter(|node| tree.plan.children(*node).is_empty());
+    TreeView {
+        state: tree.phase().name(),
+        doing: leaves
+            .map(|node| tree.plan.describe(node).path.clone())
+            .collect(),
+        ticks: tree.ticks(),
+        longest_tick_ms: Duration::from_nanos(tree.longest_ns()).as_secs_f64() * 1e3,
     }
 }

@@ -15,6 +15,7 @@ use super::ordering::{ORDER_LIMIT, Wanted};
 use super::protocol::{Answer, Inject, Request};
 use crate::assembly::Link;
 use crate::library::PortDescription;
+use crate::mission::TreeStatus;
 use crate::status::{ComponentStatus, Meter};
 use crate::supervision::Supervisor;
 
@@ -31,6 +32,8 @@ pub struct RunningSystem {
     pub interfaces: Arc<[Vec<PortDescription>]>,
     /// What the container knows of each component.
     pub statuses: Vec<Arc<ComponentStatus>>,
+    /// What is known of each behaviour tree.
+    pub trees: Vec<Arc<TreeStatus>>,
     /// The fault manager's shell.
     pub supervisor: Arc<Supervisor>,
     /// How often components work, and how long that takes.

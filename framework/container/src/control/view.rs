@@ -25,6 +25,21 @@ pub struct SystemView {
     pub container: ContainerView,
     /// By instance name.
     pub components: BTreeMap<String, ComponentView>,
+    /// Behaviour trees, by name.
+    pub trees: BTreeMap<String, TreeView>,
+}
+
+/// One behaviour tree.
+#[derive(Debug, Clone, Serialize)]
+pub struct TreeView {
+    /// `waiting`, `running`, `success`, `failure`, `failed` or `stopped`.
+    pub state: &'static str,
+    /// The leaves that are at work, by their paths.
+    pub doing: Vec<String>,
+    /// Ticks so far.
+    pub ticks: u64,
+    /// How long the longest took, in milliseconds of the machine's clock; 0 where time is simulated.
+    pub longest_tick_ms: f64,
 }
 
 /// The container.
@@ -162,7 +177,7 @@ pub struct FaultView {
 /// wrong.
 pub fn level(state: LifeCycleState, condition: Condition, open_faults: usize) -> &'static str {
     match (condition, state) {
-        (Condition::Stopped | Condition::Destroyed, _) => "STALE",
+        (Condition::Stopped | Condition::Destroyed | Condition::Unneeded, _) => "STALE",
         (Condition::Lost, _) => "ERROR",
         (Condition::Recovering | Condition::Waiting, _) => "WARN",
         (Condition::Working, LifeCycleState::Error) => "ERROR",
@@ -181,6 +196,7 @@ pub fn condition_name(condition: Condition) -> &'static str {
         Condition::Stopped => "stopped",
         Condition::Destroyed => "destroyed",
         Condition::Lost => "lost",
+        Condition::Unneeded => "done without",
     }
 }
 

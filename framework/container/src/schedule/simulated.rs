@@ -1,6 +1,8 @@
 //! All executors on one thread, in simulated time.
 
+mod adapting;
 mod playing;
+mod trees;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -8,12 +10,14 @@ use std::time::Duration;
 
 use system_model::specification::ExecutionKind;
 
+use crate::adaptation::Adaptation;
 use crate::clock::nanoseconds;
 use crate::component::{ComponentCell, Environment, mark_lost};
 use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::guard::loss::LostThread;
 use crate::lane::{Lane, Work};
+use crate::mission::{Calls, Runner};
 use crate::replay::Score;
 use crate::supervision::Supervisor;
 use crate::world::World;
@@ -43,6 +47,9 @@ impl BusyTime {
 /// All executors on one thread, in simulated time: ordered by time, priority, name.
 pub struct Simulated {
     executors: Vec<Executor>,
+    adaptations: Vec<Adaptation>,
+    /// The adaptation that is looking.
+    adapting: Option<usize>,
     components: Arc<[Arc<ComponentCell>]>,
     /// When each is due next; for one without a period, the earliest time it may run again.
     due_ns: Vec<u64>,
@@ -54,6 +61,11 @@ pub struct Simulated {
     supervisor: Arc<Supervisor>,
     world: Option<Arc<World>>,
     end_ns: u64,
+    /// Behaviour trees, and whether they have been told that all has been started.
+    trees: Vec<Runner>,
+    trees_begun: bool,
+    /// What they ask of services.
+    calls: Arc<Calls>,
     /// The recording that is played, and for each executor whether all its components are.
     played: Option<(Arc<Score>, Vec<bool>)>,
 }
@@ -62,6 +74,7 @@ impl Simulated {
     /// Not begun. Ends at `end` of simulated time, or when the robot has reached its target.
     pub fn new(
         mut executors: Vec<Executor>,
+        adaptations: Vec<Adaptation>,
         components: Arc<[Arc<ComponentCell>]>,
         supervisor: Arc<Supervisor>,
         world: Option<Arc<World>>,
@@ -81,9 +94,14 @@ impl Simulated {
                 (Arc::clone(score), played.collect())
             }),
             executors,
+            adaptations,
+            adapting: None,
             components,
             running: None,
             obeying: None,
+            trees: Vec::new(),
+            trees_begun: false,
+            calls: Arc::default(),
             environment,
             supervisor,
             world,
@@ -158,6 +176,13 @@ impl Simulated {
     /// Lets the fault manager see what happened, and does at once what it asks.
     fn serve(&mut self, lane: &Lane) {
         self.supervisor.attend();
+        self.serve_executors(lane);
+        while self.obey_in_trees() || self.call_for_trees(lane) {
+            self.serve_executors(lane);
+        }
+    }
+
+    fn serve_executors(&mut self, lane: &Lane) {
         while let Some(index) = (self.executors.iter()).position(|one| !one.orders.is_empty()) {
             self.obeying = Some(index);
             self.executors[index].obey(&self.supervisor, lane);
@@ -194,11 +219,13 @@ impl Work for Simulated {
             if lane.is_stopping() {
                 return;
             }
+            self.begin_trees();
             self.serve(lane);
             let next = self.next();
             // What time brings comes before what is executed at that time.
             let tick_ns = self.supervisor.due_ns();
             if let Some(tick_ns) = tick_ns
+                && self.tree_due_ns().is_none_or(|due_ns| tick_ns <= due_ns)
                 && next.is_none_or(|(time_ns, _)| tick_ns <= time_ns)
                 && self.cue_ns().is_none_or(|cue_ns| tick_ns <= cue_ns)
                 && !self.is_over(next.map(|(time_ns, _)| time_ns))
@@ -208,6 +235,20 @@ impl Work for Simulated {
                 }
                 self.supervisor.tick();
                 continue;
+            }
+            if let Some(due_ns) = self.tree_due_ns()
+                && next.is_none_or(|(time_ns, _)| due_ns <= time_ns)
+            {
+                if due_ns > self.environment.clock.now_ns() && !self.advance(due_ns) {
+                    return;
+                }
+                self.tick_trees();
+                continue;
+            }
+            match self.adapt_if_due(next.map(|(time_ns, _)| time_ns), lane) {
+                Some(true) => continue,
+                Some(false) => return,
+                None => {}
             }
             match self.play(next.map(|(time_ns, _)| time_ns), lane) {
                 Played::Nothing => {}
@@ -227,6 +268,9 @@ impl Work for Simulated {
     }
 
     fn after_loss(&mut self, lost: &LostThread) {
+        if self.lost_in_adaptation(lost) {
+            return;
+        }
         let index = self.obeying.take().or(self.running);
         match index.and_then(|index| self.executors.get_mut(index)) {
             Some(executor) => executor.after_loss(&self.components, lost, &self.supervisor),

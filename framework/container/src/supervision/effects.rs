@@ -55,6 +55,20 @@ impl Supervisor {
                     checkpoint_before_ns: checkpoint_before.map(nanoseconds),
                 },
             ),
+            Action::Handle { tree, within, .. } => {
+                let task = Task::Handle {
+                    until_ns: now_ns.saturating_add(nanoseconds(*within)),
+                };
+                (*tree, task)
+            }
+            Action::Adapt { component } => {
+                let requests = &self.environment.adaptation_requests;
+                if !requests.ask(*component, planned.id) {
+                    let reason = "nobody watches over its task".to_owned();
+                    self.failed(planned.id, reason);
+                }
+                return;
+            }
             Action::Stop { component } => (*component, Task::Stop),
             Action::Destroy { component } => (*component, Task::Destroy),
         };
@@ -110,17 +124,18 @@ impl Supervisor {
         });
     }
 
+    fn failed(&self, action: ActionId, reason: String) {
+        let outcome = ActionOutcome::Failed { reason };
+        let observation = Observation::Ended { action, outcome };
+        self.environment.observations.report(observation);
+    }
+
     pub(super) fn give(&self, order: Order) {
         let action = order.action;
         let orders = self.orders.get(order.component);
         let given = orders.is_some_and(|orders| orders.give(order));
         if let (false, Some(action)) = (given, action) {
-            self.environment.observations.report(Observation::Ended {
-                action,
-                outcome: ActionOutcome::Failed {
-                    reason: "too many orders wait for its executor".to_owned(),
-                },
-            });
+            self.failed(action, "too many orders wait for its executor".to_owned());
         }
     }
 }

@@ -107,6 +107,7 @@ fn perform(
                 .map_err(|error| words("onStart", &error)),
             _ => Ok(String::new()),
         },
+        Task::Handle { .. } => Err("a component is no behaviour tree".to_owned()),
         Task::Tap { port } => {
             component.services_mut().tap(*port);
             Ok(String::new())

@@ -60,6 +60,11 @@ pub enum Task {
     },
     /// Start the actuator again that an emergency stop has stopped.
     Resume,
+    /// Begin a behaviour tree for a fault.
+    Handle {
+        /// By then it must have ended, in nanoseconds of the container's clock.
+        until_ns: u64,
+    },
     /// Put a tap on a data port, for an injected fault.
     Tap {
         /// Index of the port.

@@ -19,6 +19,7 @@ use system_model::specification::{
 };
 
 use super::{Emergency, Monitors, Standbys, Supervisor};
+use crate::adaptation::AdaptationRequests;
 use crate::assembly::{Factory, Variant};
 use crate::clock::Clock;
 use crate::component::{Component, ComponentCell, Detectors, Environment};
@@ -182,6 +183,7 @@ fn environment() -> Environment {
         injections: Injections::default(),
         world: None,
         score: None,
+        adaptation_requests: AdaptationRequests::default(),
         busy: BusyTime::default(),
     }
 }
@@ -235,6 +237,7 @@ fn application() -> ApplicationSpecification {
         manager_connections: Vec::new(),
         coordination: Vec::new(),
         world: None,
+        trees: Vec::new(),
     }
 }
 

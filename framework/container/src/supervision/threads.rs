@@ -183,6 +183,7 @@ mod tests {
     use fault_manager::FaultManager;
 
     use super::*;
+    use crate::adaptation::AdaptationRequests;
     use crate::clock::Clock;
     use crate::component::Environment;
     use crate::device::Devices;
@@ -202,6 +203,7 @@ mod tests {
             injections: Injections::default(),
             world: None,
             score: None,
+            adaptation_requests: AdaptationRequests::default(),
             busy: BusyTime::default(),
         };
         let (supervisor, _wanted) = Supervisor::new(

@@ -146,6 +146,7 @@ impl Agenda {
         };
         let result = match self.steps[step] {
             Step::Construct => component.construct(lane.loss()),
+            Step::Operate(Operation::Start) if component.status().is_dormant() => return,
             Step::Operate(operation) => component.operate(operation, lane.loss()),
             Step::Inherit => {
                 component.inherit(lane.loss());

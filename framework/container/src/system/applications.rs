@@ -4,12 +4,16 @@
 mod shift;
 
 use std::ops::Range;
+use std::sync::Arc;
 
+use behavior_tree::Plan;
 use system_model::injection::Injection;
 use system_model::process_model::ProcessModel;
 use system_model::profile::Located;
 use system_model::rules::{DependencyRule, Entity, FaultRules};
 use system_model::specification::{ApplicationSpecification, ComponentSpecification};
+
+use crate::adaptation::AttachedTask;
 
 /// One application as it was loaded; everything in it counts components within the application.
 #[derive(Debug, Clone)]
@@ -20,8 +24,12 @@ pub struct Application {
     pub rules: FaultRules,
     /// The process models that the rules name, by the name that they use.
     pub models: Vec<(String, ProcessModel)>,
+    /// The plans of its behaviour trees, in the order of the specification.
+    pub plans: Vec<Arc<Plan>>,
     /// Faults that are made on purpose.
     pub injections: Vec<Injection>,
+    /// The task that it is to do, and is watched over.
+    pub task: Option<AttachedTask>,
 }
 
 /// All applications together.
@@ -48,6 +56,13 @@ pub(super) struct Part {
     pub(super) application: Application,
     /// Its rules, with components of the list of all: those of other applications have none here.
     pub(super) rules: FaultRules,
+}
+
+impl Part {
+    /// How many behaviour trees the application has.
+    pub(super) fn trees(&self) -> usize {
+        self.application.specification.trees.len()
+    }
 }
 
 impl Applications {
@@ -147,6 +162,7 @@ fn together(applications: &[Application]) -> ApplicationSpecification {
         manager_connections: Vec::new(),
         coordination: Vec::new(),
         world: specifications().find_map(|one| one.world.clone()),
+        trees: Vec::new(),
     }
 }
 
@@ -161,6 +177,9 @@ fn rename(application: &mut Application) {
         .components
         .iter_mut()
         .for_each(rename);
+    for tree in &mut application.specification.trees {
+        tree.name = format!("{prefix}/{}", tree.name);
+    }
     let rules = application.rules.components.iter_mut();
     let secondaries = rules.flat_map(|rules| &mut rules.secondaries);
     secondaries.for_each(|secondary| rename(&mut secondary.specification));
@@ -200,13 +219,16 @@ mod tests {
                 manager_connections: Vec::new(),
                 coordination: Vec::new(),
                 world: (name == "mapping").then(|| "world.xml".into()),
+                trees: Vec::new(),
             },
             rules: FaultRules {
                 dependencies: vec![between, needs(Entity::Component(0), "localisation")],
                 ..FaultRules::default()
             },
             models: Vec::new(),
+            plans: Vec::new(),
             injections: Vec::new(),
+            task: None,
         }
     }
 

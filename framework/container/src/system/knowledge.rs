@@ -41,6 +41,7 @@ impl System {
             applications: self.applications.clone(),
             interfaces: Arc::clone(&self.interfaces),
             statuses: self.statuses.clone(),
+            trees: self.trees.clone(),
             supervisor: Arc::clone(&self.supervisor),
         }
     }

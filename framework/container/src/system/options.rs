@@ -9,6 +9,7 @@ use system_model::injection::Injection;
 use system_model::network::NetworkSpecification;
 
 use super::StartError;
+use crate::adaptation::AdaptationRequests;
 use crate::assembly::LibraryOptions;
 use crate::clock::Clock;
 use crate::component::Environment;
@@ -107,6 +108,7 @@ impl RunOptions {
             scenes: Scenes::default(),
             world,
             score: self.score.clone(),
+            adaptation_requests: AdaptationRequests::default(),
             busy: BusyTime::default(),
         })
     }

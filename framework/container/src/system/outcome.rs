@@ -51,6 +51,7 @@ impl System {
                 .collect(),
             restarts: self.restarts(),
             robot: self.world.as_ref().map(|world| world.summary()),
+            adaptation: self.environment.adaptation_requests.summary(),
             recording: None,
         }
     }

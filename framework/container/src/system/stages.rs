@@ -13,9 +13,11 @@ use super::agenda::{Agenda, Failure, Step};
 use super::persistence::Persistence;
 use super::real_time::{self, WorldThread};
 use super::{BRING_UP_LIMIT, ClockKind, STOP_LIMIT, StartError, System};
+use crate::adaptation::{Adaptation, AdaptationLane};
 use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::lane::{Lane, SETUP_TOKEN, remaining};
+use crate::mission::{Caller, Runner};
 use crate::schedule::{RealTime, Simulated};
 
 impl System {
@@ -23,6 +25,8 @@ impl System {
     pub(super) fn begin(
         mut self,
         executors: Vec<Executor>,
+        runners: Vec<Runner>,
+        adaptations: Vec<Adaptation>,
         wanted: Receiver<usize>,
     ) -> Result<Self, StartError> {
         if let Err(error) = self.bring_up() {
@@ -30,7 +34,7 @@ impl System {
             let _log_error = self.close();
             return Err(error);
         }
-        if let Err(error) = self.launch(executors, wanted) {
+        if let Err(error) = self.launch(executors, runners, adaptations, wanted) {
             // What is on the disk is for the next try.
             self.persistence = Persistence::default();
             let _nothing_to_sum_up = self.stop("start_refused");
@@ -185,6 +189,8 @@ impl System {
     fn launch(
         &mut self,
         executors: Vec<Executor>,
+        runners: Vec<Runner>,
+        adaptations: Vec<Adaptation>,
         wanted: Receiver<usize>,
     ) -> Result<(), StartError> {
         self.environment.observations.report(Observation::Running);
@@ -192,11 +198,13 @@ impl System {
             ClockKind::Simulated => {
                 let work = Simulated::new(
                     executors,
+                    adaptations,
                     Arc::clone(&self.components),
                     Arc::clone(&self.supervisor),
                     self.world.clone(),
                     self.options.duration,
-                );
+                )
+                .with_trees(runners, Arc::clone(&self.calls));
                 let lane = Lane::new("simulated", Box::new(work));
                 self.crew.start(&lane, || {})?;
                 let members = (0..self.components.len()).collect();
@@ -225,8 +233,39 @@ impl System {
                 for executor in executors {
                     self.launch_executor(executor)?;
                 }
+                if self.calls.is_used() {
+                    self.launch_caller()?;
+                }
+                for runner in runners {
+                    let environment = Arc::clone(&self.environment);
+                    self.mission_threads.start(runner, environment)?;
+                }
+                for adaptation in adaptations {
+                    self.launch_adaptation(adaptation)?;
+                }
             }
         }
+        Ok(())
+    }
+
+    fn launch_caller(&mut self) -> Result<(), StartError> {
+        let calls = Arc::clone(&self.calls);
+        let environment = Arc::clone(&self.environment);
+        let work = Caller::new(calls, Arc::clone(&self.components), environment);
+        let lane = Lane::new("tree calls", Box::new(work));
+        self.crew.start(&lane, || {})?;
+        self.lanes.push((lane, Vec::new()));
+        Ok(())
+    }
+
+    fn launch_adaptation(&mut self, adaptation: Adaptation) -> Result<(), StartError> {
+        let components = Arc::clone(&self.components);
+        let environment = Arc::clone(&self.environment);
+        let work = AdaptationLane::new(adaptation, components, environment);
+        let lane = Lane::new("adaptation", Box::new(work));
+        self.crew.start(&lane, || {})?;
+        // Components of its own it has none: those that it enters belong to their executors.
+        self.lanes.push((lane, Vec::new()));
         Ok(())
     }
 

@@ -87,8 +87,11 @@ pub(super) fn supervise(
     if !problems.is_empty() {
         return Err(problems);
     }
+    let trees: usize = parts.iter().map(Part::trees).sum();
+    let of_trees = (0..trees).map(|_| Arc::new(Orders::new(Arc::default())));
     let orders = (0..assembly.components.len())
         .map(|index| orders_of(assembly, index))
+        .chain(of_trees)
         .collect();
     // In simulated time loading takes none.
     let keeps_own = !environment.clock.is_simulated();

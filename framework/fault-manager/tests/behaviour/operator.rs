@@ -62,7 +62,13 @@ fn a_reset_is_a_verdict_of_its_own_and_heals_when_the_component_works() {
     assert_eq!(verdict.rule, None);
     let words = "reset camera".to_owned();
     assert_eq!(verdict.plan, [words.as_str()]);
-    assert_eq!(verdict.evidence, Evidence::Order { order: words });
+    assert_eq!(
+        verdict.evidence,
+        Evidence::Order {
+            order: words,
+            by: None
+        }
+    );
     bench.done(&act);
     assert_eq!(bench.newest().state, FaultState::Confirmed);
     bench.works(0);

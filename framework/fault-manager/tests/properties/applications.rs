@@ -50,6 +50,7 @@ pub fn application(name: &str, rules: &[ComponentRules], kinds: &[u8]) -> Scope 
             manager_connections: Vec::new(),
             coordination: Vec::new(),
             world: None,
+            trees: Vec::new(),
         },
         rules: FaultRules {
             application: name.to_owned(),

@@ -55,11 +55,14 @@ impl Shell {
                 assert_eq!(self.facts[component].down, Level::Up);
                 self.count(component, act);
             }
+            Action::Adapt { .. } => {
+                assert!(!latched, "no recovery begins in an emergency stop: {act:?}");
+            }
             Action::Stop { .. } => {
                 self.facts[component].down = self.facts[component].down.max(Level::Stopped);
             }
             Action::Destroy { .. } => self.facts[component].down = Level::Destroyed,
-            Action::EmergencyStop => {}
+            Action::Handle { .. } | Action::EmergencyStop => {}
         }
         self.facts[component].awaits_first_cycle = false;
     }

@@ -58,6 +58,7 @@ pub fn application(name: &str, components: &[&str]) -> Scope {
             manager_connections: Vec::new(),
             coordination: Vec::new(),
             world: None,
+            trees: Vec::new(),
         },
         rules: FaultRules {
             application: name.to_owned(),
@@ -128,7 +129,7 @@ impl Bench {
     pub fn new(scopes: Vec<Scope>) -> Self {
         let components = scopes
             .iter()
-            .map(|scope| scope.specification.components.len());
+            .map(|scope| scope.specification.components.len() + scope.specification.trees.len());
         let mut bench = Self {
             incarnations: vec![1; components.sum()],
             manager: FaultManager::new(scopes),

@@ -24,6 +24,20 @@ pub struct ObstacleReport {
     pub speed_share: f64,
 }
 
+/// Where the robot shall go, as a mission has chosen.
+#[derive(PortData, Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[repr(C)]
+pub struct GoalChoice {
+    /// When it was chosen.
+    #[unit("ns")]
+    pub time: u64,
+    /// 0: it stays where it is; 1 and 2: what the first or the second detector sees; 3: where it
+    /// started.
+    pub goal: u32,
+    /// Nothing.
+    pub reserved: u32,
+}
+
 /// How the robot shall move now.
 #[derive(PortData, Debug, Clone, Copy, PartialEq, Default)]
 #[repr(C)]

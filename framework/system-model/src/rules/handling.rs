@@ -118,6 +118,30 @@ pub fn declared_replacement_cost(preload: Preload, tier: IsolationTier) -> Durat
     }
 }
 
+/// As long as a person would wait for a robot that does nothing visible.
+pub const DEFAULT_HANDLE_DEADLINE: Duration = Duration::from_secs(10);
+
+/// `handle`: a behaviour tree of the application handles the fault, after resets and secondaries and
+/// before the severity of the loss.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct HandleRule {
+    /// Name of the tree.
+    pub tree: String,
+    /// By then it must have ended.
+    pub deadline: Duration,
+}
+
+/// `adapt`: a task that is done in another way when what runs does not do any more. Of an
+/// application: the task is watched over. Of a component: the last rung before the severity of the
+/// loss; the task is to go on without the component.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct AdaptRule {
+    /// File of the task.
+    pub task: String,
+    /// The robot of the task on which the application runs; none where there is only one.
+    pub robot: Option<String>,
+}
+
 /// `actuator`: the component moves something.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ActuatorRule {

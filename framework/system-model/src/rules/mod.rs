@@ -19,10 +19,11 @@ pub use diagnosis::{
     ApplicationSeverity, ComponentSeverity, DependencyRule, DependencySeverity, Entity, Provider,
 };
 pub use handling::{
-    ActuatorRule, DEFAULT_FAULT_WINDOW, DEFAULT_PERSISTED_MAX_AGE, DEFAULT_RETRY_MAX, FaultRule,
-    IsolationRule, IsolationTier, MAX_RETRY_MAX, MAX_SAFE_STATE_BYTES, Preload, ProcessLimits,
-    RecoveryRule, ResurrectRule, SafeStateRule, SafeValue, Secondary, StopCategory,
-    declared_replacement_cost, declared_reset_cost,
+    ActuatorRule, AdaptRule, DEFAULT_FAULT_WINDOW, DEFAULT_HANDLE_DEADLINE,
+    DEFAULT_PERSISTED_MAX_AGE, DEFAULT_RETRY_MAX, FaultRule, HandleRule, IsolationRule,
+    IsolationTier, MAX_RETRY_MAX, MAX_SAFE_STATE_BYTES, Preload, ProcessLimits, RecoveryRule,
+    ResurrectRule, SafeStateRule, SafeValue, Secondary, StopCategory, declared_replacement_cost,
+    declared_reset_cost,
 };
 pub use monitor::{
     DecisionRule, MonitorRule, ProcessModelRule, RulePort, VotingMethod, VotingRule, VotingSource,
@@ -44,6 +45,8 @@ pub struct FaultRules {
     pub fault: Option<Located<FaultRule>>,
     /// The application's own heartbeat.
     pub heartbeat: Option<Located<HeartbeatRule>>,
+    /// The task that is watched over.
+    pub adapt: Option<Located<AdaptRule>>,
     /// One entry for each of `ApplicationSpecification::components`, in the same order.
     pub components: Vec<ComponentRules>,
     /// Rules of executors.
@@ -93,10 +96,10 @@ pub struct ComponentRules {
     pub actuator: Option<Located<ActuatorRule>>,
     /// Where the component runs.
     pub isolation: Option<Located<IsolationRule>>,
-    /// `adapt`: file of the task adaptation that the component takes part in.
-    pub adapt: Option<Located<String>>,
-    /// `handle`: file of the task that is run when the component has a fault.
-    pub handle: Option<Located<String>>,
+    /// When all recovery is exhausted, the task is to go on without the component.
+    pub adapt: Option<Located<AdaptRule>>,
+    /// When all recovery is exhausted, a behaviour tree handles the fault.
+    pub handle: Option<Located<HandleRule>>,
 }
 
 /// All rules of one port.

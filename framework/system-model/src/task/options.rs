@@ -58,6 +58,8 @@ pub struct DecisionOptions {
     pub estimation_deadline: Duration,
     /// A change that is not done by then has failed.
     pub reconfiguration_deadline: Duration,
+    /// How often what runs is evaluated.
+    pub evaluation_period: Duration,
 }
 
 /// No more candidates than this where a file says nothing: a person reads tens, an estimator that
@@ -85,6 +87,7 @@ impl Default for DecisionOptions {
             hysteresis: 0.05,
             estimation_deadline: Duration::from_millis(500),
             reconfiguration_deadline: Duration::from_secs(2),
+            evaluation_period: super::DEFAULT_EVALUATION_PERIOD,
         }
     }
 }

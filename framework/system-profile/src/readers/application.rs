@@ -6,6 +6,7 @@ use system_model::profile::{
 };
 
 use super::header::{self, required_attribute, required_text};
+use super::mission;
 use super::{APPLICATION_RULES, COMPONENT_RULES};
 use super::{network, ports};
 use crate::node::Node;
@@ -21,6 +22,7 @@ pub(super) fn read(root: &Node<'_>) -> ApplicationProfile {
         coordination: coordination(root),
         world: world(root),
         network: network::read(root).map(Box::new),
+        trees: mission::trees(root),
     }
 }
 

@@ -7,6 +7,7 @@ mod data_type;
 mod execution;
 mod header;
 pub(crate) mod injection;
+mod mission;
 mod network;
 mod ports;
 mod process_model;

@@ -26,6 +26,7 @@
 //!
 //! Components stand in the order in which data flow through them: candidates are numbered by it.
 
+mod attachment;
 mod names;
 mod preferences;
 mod robots;

@@ -7,6 +7,7 @@ mod files;
 pub(crate) mod injections;
 mod instances;
 mod manager;
+mod missions;
 mod network;
 mod ports;
 mod references;
@@ -15,12 +16,14 @@ pub(crate) mod rules;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
+use behavior_tree::Plan;
 use system_model::network::NetworkSpecification;
 use system_model::profile::{ApplicationProfile, CompositeProfile, Profile};
 use system_model::specification::{
     ApplicationSpecification, ComponentSpecification, ManagerConnection,
 };
 
+use crate::check::FileReport;
 use crate::problem::{Problem, Severity};
 use crate::suggest;
 use connections::Wire;
@@ -56,6 +59,8 @@ pub struct LoadOutcome {
     pub specification: Option<ApplicationSpecification>,
     /// The robot's place in the network, if the application has one; as sound as the specification.
     pub network: Option<NetworkSpecification>,
+    /// The plans of its behaviour trees, in the order of the specification.
+    pub plans: Vec<Plan>,
     /// All problems of all files involved, file by file in the order they were opened.
     pub problems: Vec<Problem>,
 }
@@ -82,10 +87,14 @@ pub fn load_application(path: &Path, options: &LoadOptions) -> LoadOutcome {
         }
         _ => None,
     };
+    let mut problems = assembly.files.problems();
+    let reports = assembly.tree_files.iter();
+    problems.extend(reports.flat_map(|report| report.problems.iter().cloned()));
     LoadOutcome {
         specification: specification.filter(|_| assembly.is_sound()),
         network: assembly.network.take().filter(|_| assembly.is_sound()),
-        problems: assembly.files.problems(),
+        plans: std::mem::take(&mut assembly.plans),
+        problems,
     }
 }
 
@@ -106,6 +115,9 @@ pub(crate) struct Assembly<'o> {
     sites: Vec<Site>,
     /// The composites that were expanded, and what the names of their members begin with.
     expanded: Vec<(Rc<LoadedFile>, String)>,
+    /// The behaviour trees' plans, and the files that they come from.
+    plans: Vec<Plan>,
+    pub(crate) tree_files: Vec<FileReport>,
 }
 
 impl<'o> Assembly<'o> {
@@ -123,6 +135,8 @@ impl<'o> Assembly<'o> {
             network: None,
             sites: Vec::new(),
             expanded: Vec::new(),
+            plans: Vec::new(),
+            tree_files: Vec::new(),
         }
     }
 
@@ -144,6 +158,7 @@ impl<'o> Assembly<'o> {
             .map(|reference| self.find(file, reference, Sibling::Worlds));
         connections::check(&self.wires);
         coordination::check(&self.edges, &self.components);
+        let trees = self.trees(file, &profile.trees);
         if matches!(world, Some(None)) {
             return None;
         }
@@ -155,6 +170,7 @@ impl<'o> Assembly<'o> {
             connections: self.wires.drain(..).map(|wire| wire.connection).collect(),
             coordination: self.edges.drain(..).map(|edge| edge.ends).collect(),
             world: world.flatten(),
+            trees,
         })
     }
 

@@ -23,6 +23,8 @@ pub(crate) enum Sibling {
     Services,
     /// `types`, for data types.
     DataTypes,
+    /// `trees`, for behaviour trees.
+    Trees,
 }
 
 impl Sibling {
@@ -32,6 +34,7 @@ impl Sibling {
             Self::Worlds => "worlds",
             Self::Services => "services",
             Self::DataTypes => "types",
+            Self::Trees => "trees",
         }
     }
 }

@@ -3,3 +3,4 @@
 mod connections;
 mod project;
 mod references;
+mod trees;

@@ -110,7 +110,7 @@ fn rules_of_components() {
             <standby preload='warm'/>
             <recovery deadline='20'/><isolation group='drive' memory_limit_kb='2048' open_files='32' system_call_filter='false'>process</isolation>
             <actuator stop_category='1'><command port='command' safe_value='0'/></actuator>
-            <adapt>adapt.xml</adapt><handle><reference>handle.xml</reference></handle>",
+            <adapt task='adapt.xml' robot='R2'/>",
         )])
         .sound();
     let motor = &rules.components[4];
@@ -156,8 +156,12 @@ fn rules_of_components() {
     let actuator = &motor.actuator.as_ref().unwrap().value;
     assert_eq!(actuator.stop_category, StopCategory::ControlledThenOff);
     assert_eq!(motor.ports[0].checks.safe_values[0].value.value, 0.0);
-    assert_eq!(motor.adapt.as_ref().unwrap().value, "adapt.xml");
-    assert_eq!(motor.handle.as_ref().unwrap().value, "handle.xml");
+    let adapt = &motor.adapt.as_ref().unwrap().value;
+    assert_eq!(
+        (adapt.task.as_str(), adapt.robot.as_deref()),
+        ("adapt.xml", Some("R2"))
+    );
+    assert_eq!(motor.handle, None);
 }
 
 #[test]

@@ -22,6 +22,22 @@ const READER_ONLY: &[(&str, Edit)] = &[
         ("pump.xml", "<period>20</period>", "<period>0</period>"),
     ),
     (
+        "a bound depends on another attribute's value",
+        (
+            "garden.xml",
+            "tick_deadline_ms=\"5\"",
+            "tick_deadline_ms=\"51\"",
+        ),
+    ),
+    (
+        "a name must not be another one's",
+        ("garden.xml", "<tree name=\"patrol\"", "<tree name=\"pump\""),
+    ),
+    (
+        "what a tree says is not this schema's",
+        ("garden.xml", "main=\"Patrol\"", "main=\"Ptrol\""),
+    ),
+    (
         "a bound depends on another element's value",
         ("pump.xml", "<max>1.5</max>", "<max>-1</max>"),
     ),
@@ -229,7 +245,8 @@ struct Edited {
 
 fn edited<'a>(edits: impl IntoIterator<Item = &'a Edit>) -> Edited {
     let folder = tempfile::tempdir().expect("a folder");
-    for file in files_in(&own(), "xml") {
+    let trees = files_in(&own(), "tree");
+    for file in files_in(&own(), "xml").into_iter().chain(trees) {
         let name = file.file_name().expect("a name");
         std::fs::copy(&file, folder.path().join(name)).expect("a copy");
     }

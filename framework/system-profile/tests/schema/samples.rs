@@ -21,7 +21,8 @@ pub fn files_in(folder: &Path, ending: &str) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).expect("a folder");
     let paths = entries.map(|entry| entry.expect("an entry").path());
     let files = paths.flat_map(|path| match path.is_dir() {
-        true if path.ends_with("target") => Vec::new(),
+        // What was built; and behaviour trees, which are BehaviorTree.CPP's own format.
+        true if path.ends_with("target") || path.ends_with("trees") => Vec::new(),
         true => files_in(&path, ending),
         false => vec![path],
     });

@@ -1,8 +1,9 @@
 //! Tasks for tests and benchmarks.
 
 use system_model::task::{
-    ComponentClass, DecisionOptions, GenerationOptions, QualityPreferences, StateMachine,
-    TaskComponent, TaskInstance, TaskLink, TaskResource, TaskRobot, TaskSpecification,
+    Attachment, ComponentClass, DecisionOptions, GenerationOptions, LinkPorts, QualityPreferences,
+    StateMachine, TaskComponent, TaskInstance, TaskLink, TaskResource, TaskRobot,
+    TaskSpecification,
 };
 
 /// A chain from a sensor over computations to an actuator; every robot has everything, needs one unit
@@ -23,6 +24,7 @@ pub fn chain(robots: usize, components: usize, optional: usize, room: f64) -> Ta
         component,
         demand: vec![1.0],
         estimates: Vec::new(),
+        attachment: Attachment::default(),
     };
     let link = |from| TaskLink {
         from,
@@ -30,6 +32,7 @@ pub fn chain(robots: usize, components: usize, optional: usize, room: f64) -> Ta
         through: (components..all)
             .filter(|it| it % (components - 1) == from)
             .collect(),
+        ports: LinkPorts::default(),
     };
     TaskSpecification {
         name: "chain".into(),
@@ -50,6 +53,7 @@ pub fn chain(robots: usize, components: usize, optional: usize, room: f64) -> Ta
             .map(|robot| TaskRobot {
                 name: format!("R{}", robot + 1),
                 available: vec![room],
+                sensors: Vec::new(),
                 instances: (0..all).map(instance).collect(),
             })
             .collect(),

@@ -184,6 +184,8 @@ fn load(folder: &Path, plan: &Plan) -> Application {
             .rules
             .unwrap_or_else(|| panic!("{:#?}", rules.problems)),
         models: Vec::new(),
+        plans: Vec::new(),
+        task: None,
         injections: injected
             .injections
             .unwrap_or_else(|| panic!("{problems:#?}")),

@@ -143,6 +143,10 @@ fn ladder(scope: &Scope, rules: &ComponentRules) -> Vec<String> {
             secondary.specification.type_name
         )
     }));
+    steps.extend(rules.adapt.as_ref().map(|rule| {
+        let task = &rule.value.task;
+        format!("The task {task} is done without it, if there is another way.")
+    }));
     steps.push(match fault.severity {
         ApplicationSeverity::Ignore => {
             "It is stopped, and what needs it; the application goes on without.".to_owned()

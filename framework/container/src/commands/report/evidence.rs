@@ -81,7 +81,10 @@ pub(super) fn evidence(verdict: &Verdict) -> Evidence {
         "votes" => votes(&fields),
         "overruns" | "heartbeat" | "memory" => of_work(kind, &fields),
         "order" => Evidence {
-            seen: format!("an operator ordered it: {}", fields.text("order")),
+            seen: match fields.text("by").as_str() {
+                "" => format!("an operator ordered it: {}", fields.text("order")),
+                tree => format!("tree {tree} ordered it: {}", fields.text("order")),
+            },
             ..Evidence::default()
         },
         other => Evidence {

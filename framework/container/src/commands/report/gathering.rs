@@ -4,6 +4,8 @@
 use std::collections::{BTreeSet, HashSet};
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
+use behavior_tree::catalogue::BUILT_IN;
+use behavior_tree::component_nodes::component_node;
 use serde_json::Value;
 
 use super::model::{FaultNumber, Incident, Run, StateChange, Verdict};
@@ -15,6 +17,9 @@ const MOST_INCIDENTS: usize = 500;
 /// Faults that are kept of a run: those of a campaign of one a second for an hour. That verdicts were
 /// left out is said.
 const MOST_FAULTS: usize = 4000;
+
+/// Trees and nodes of trees that have a row beside those of components: what a mission is made of.
+const MOST_TREE_ROWS: usize = 24;
 
 /// A run that is being read.
 #[derive(Debug, Default)]
@@ -28,6 +33,8 @@ pub(super) struct Gathering {
     seen: HashSet<u64>,
     /// Incidents beyond [`MOST_INCIDENTS`].
     incidents_left_out: u64,
+    /// Trees, and nodes of trees, that have a row.
+    tree_rows: usize,
 }
 
 impl Gathering {
@@ -59,6 +66,11 @@ impl Gathering {
         match kind {
             "run_started" => self.begin(event),
             "state" => self.change(t_ns, event),
+            "tree_state" => {
+                self.begin_tree(t_ns, event);
+                self.happen(t_ns, kind, event);
+            }
+            "tree_nodes" => self.change_nodes(t_ns, event),
             "verdict" => self.judge(t_ns, event)?,
             "overrun" => {
                 let executor = text(event, "executor");
@@ -116,6 +128,39 @@ impl Gathering {
         states.or_default().push(change);
     }
 
+    /// A tree has a row of its own among the components.
+    fn begin_tree(&mut self, t_ns: u64, event: &Value) {
+        let tree = text(event, "tree");
+        self.change_tree(tree, t_ns, &text(event, "to").to_uppercase());
+    }
+
+    /// So have those of its nodes that have a name of their own.
+    fn change_nodes(&mut self, t_ns: u64, event: &Value) {
+        let tree = text(event, "tree");
+        let nodes = event.get("nodes").and_then(Value::as_array);
+        for node in nodes.into_iter().flatten() {
+            let path = node.get(0).and_then(Value::as_str).unwrap_or_default();
+            let status = node.get(1).and_then(Value::as_str).unwrap_or_default();
+            if let Some(name) = own_name(path) {
+                self.change_tree(format!("{tree}: {name}"), t_ns, status);
+            }
+        }
+    }
+
+    fn change_tree(&mut self, row: String, t_ns: u64, to: &str) {
+        let is_known = self.run.states.contains_key(&row);
+        if !is_known && self.tree_rows >= MOST_TREE_ROWS {
+            return;
+        }
+        self.tree_rows += usize::from(!is_known);
+        self.run.states.entry(row).or_default().push(StateChange {
+            t_ns,
+            from: String::new(),
+            to: to.to_owned(),
+            incarnation: 0,
+        });
+    }
+
     fn judge(&mut self, t_ns: u64, event: &Value) -> Result<(), String> {
         let verdict: Verdict = serde_json::from_value(event.clone())
             .map_err(|error| format!("it is no verdict: {error}"))?;
@@ -158,6 +203,14 @@ fn mark(event: &Value) -> u64 {
     hasher.finish()
 }
 
+/// The name that the author of a tree has given a node; none if it is only called what it is.
+fn own_name(path: &str) -> Option<&str> {
+    let name = path.rsplit('/').next()?;
+    let kind = name.split("::").next()?;
+    let is_kind = BUILT_IN.iter().any(|node| node.id == kind) || component_node(kind).is_some();
+    (!is_kind && !name.is_empty()).then_some(name)
+}
+
 /// What happened; none for what is only noise. Faults stand in their verdicts.
 fn in_words(kind: &str, event: &Value) -> Option<String> {
     let field = |name: &str| text(event, name);
@@ -187,6 +240,7 @@ fn in_words(kind: &str, event: &Value) -> Option<String> {
         }
         "log" | "fault" => return None,
         "notice" => field("message"),
+        "adaptation" => decided(event),
         "container_restarted" => format!(
             "{}; {}; {}; {:.3} s without a container",
             field("seen"),
@@ -202,9 +256,49 @@ fn in_words(kind: &str, event: &Value) -> Option<String> {
             field("change"),
             field("message")
         ),
+        "tree_state" => format!(
+            "tree {}: {} -> {}",
+            field("tree"),
+            field("from"),
+            field("to")
+        ),
         "target_reached" => "the robot has reached its target".to_owned(),
         _ => return None,
     })
+}
+
+/// A decision of self-adaptation: how it ended, how long it took, and what became of each candidate.
+fn decided(event: &Value) -> String {
+    let phases = &event["phases"];
+    let microseconds: u64 = [
+        "monitoring_us",
+        "synthesis_us",
+        "estimation_us",
+        "reconfiguration_us",
+    ]
+    .iter()
+    .map(|phase| number(phases, phase))
+    .sum();
+    let time_s = std::time::Duration::from_micros(microseconds).as_secs_f64();
+    let candidates = event["candidates"].as_array();
+    let candidates = candidates.into_iter().flatten().map(|candidate| {
+        let components = candidate["components"].as_array();
+        let components = components.into_iter().flatten();
+        let components: Vec<&str> = components.filter_map(Value::as_str).collect();
+        let quality = candidate["p_t"].as_f64();
+        let quality = quality.map_or_else(String::new, |it| format!(", P_T {it:.4}"));
+        let reason = match text(candidate, "rejected_because") {
+            reason if reason.is_empty() => "taken".to_owned(),
+            reason => format!("not taken: {reason}"),
+        };
+        format!(
+            "; candidate {} ({}{quality}) {reason}",
+            number(candidate, "number"),
+            components.join(" | ")
+        )
+    });
+    let candidates: String = candidates.collect();
+    format!("{}, after {time_s:.3} s{candidates}", text(event, "text"))
 }
 
 fn text(event: &Value, field: &str) -> String {

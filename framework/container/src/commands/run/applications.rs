@@ -2,14 +2,16 @@
 //! each is about, and the problems of all files listed together.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use behavior_tree::Plan;
 use container::system::Application;
 use system_model::specification::ApplicationSpecification;
 use system_profile::{
     Document, LoadOptions, Problem, Severity, load_application, load_injections, load_rules,
 };
 
-use super::{Failed, errors_on_terminal, exit_code, models, problems, show};
+use super::{Failed, errors_on_terminal, exit_code, models, problems, show, tasks};
 
 /// The files of a run.
 #[derive(Debug, Clone, Copy)]
@@ -31,6 +33,7 @@ pub(in crate::commands) fn load(sources: &Sources<'_>) -> Result<Vec<Application
     for application in &mut applications {
         let (rules, specification) = (&application.rules, &application.specification);
         application.models = models::load(rules, specification, sources.search_path)?;
+        application.task = tasks::load(rules, specification, sources.search_path)?;
     }
     Ok(applications)
 }
@@ -58,15 +61,19 @@ pub(in crate::commands) fn read(
             dangling: Severity::Error,
         },
         problems: Vec::new(),
+        plans: Vec::new(),
         sound: true,
     };
     let specifications: Vec<ApplicationSpecification> = (sources.applications.iter())
         .filter_map(|file| reading.application(file))
         .collect();
     reading.check_names(&specifications);
-    let applications: Vec<Application> = (specifications.iter())
+    let mut applications: Vec<Application> = (specifications.iter())
         .map(|specification| reading.rules_of(specification, &specifications))
         .collect();
+    for (application, plans) in applications.iter_mut().zip(reading.plans) {
+        application.plans = plans.into_iter().map(Arc::new).collect();
+    }
     if !reading.sound {
         return Err(not_started(sources.applications, &reading.problems));
     }
@@ -116,6 +123,8 @@ struct Reading<'run> {
     sources: &'run Sources<'run>,
     options: LoadOptions,
     problems: Vec<Problem>,
+    /// The plans of the trees of each application that can be used.
+    plans: Vec<Vec<Plan>>,
     /// Whether everything read so far can be used.
     sound: bool,
 }
@@ -125,6 +134,9 @@ impl Reading<'_> {
         let outcome = load_application(file, &self.options);
         self.found(outcome.problems);
         self.sound &= outcome.specification.is_some();
+        if outcome.specification.is_some() {
+            self.plans.push(outcome.plans);
+        }
         outcome.specification
     }
 
@@ -155,7 +167,9 @@ impl Reading<'_> {
             specification: specification.clone(),
             rules: outcome.rules.unwrap_or_default(),
             models: Vec::new(),
+            plans: Vec::new(),
             injections,
+            task: None,
         }
     }
 

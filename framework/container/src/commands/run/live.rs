@@ -17,6 +17,8 @@ use super::words::describe;
 pub(super) struct Watcher {
     lines: Receiver<(u64, Event)>,
     table: Option<Table>,
+    /// Standard output belongs to the result.
+    aside: bool,
 }
 
 /// One line for the robot, one for each component.
@@ -34,9 +36,14 @@ struct Table {
 const RATE_WINDOW: Duration = Duration::from_secs(1);
 
 impl Watcher {
-    pub(super) fn new(application: &str, lines: Receiver<(u64, Event)>) -> Self {
-        let table = on_terminal().then(|| Table::new(application));
-        Self { lines, table }
+    /// `aside`: the lines go to standard error, and there is no table.
+    pub(super) fn new(application: &str, lines: Receiver<(u64, Event)>, aside: bool) -> Self {
+        let table = (on_terminal() && !aside).then(|| Table::new(application));
+        Self {
+            lines,
+            table,
+            aside,
+        }
     }
 
     /// Shows what has happened since the last time.
@@ -71,6 +78,7 @@ impl Watcher {
         match &self.table {
             // A view that cannot be drawn is no reason to stop the robot.
             Some(table) => drop(table.lines.println(line)),
+            None if self.aside => drop(writeln!(io::stderr(), "{line}")),
             None => drop(writeln!(io::stdout(), "{line}")),
         }
     }

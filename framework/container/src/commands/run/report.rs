@@ -38,6 +38,13 @@ pub(super) fn print(
             robot.path_length_m, robot.collisions, robot.least_clearance_m
         )?;
     }
+    if let Some(adaptation) = &summary.adaptation {
+        writeln!(
+            output,
+            "  self-adaptation: {} decisions, {} changes",
+            adaptation.decisions, adaptation.changes
+        )?;
+    }
     components(output, summary)?;
     if let Some(recording) = &summary.recording {
         recorded(output, recording)?;

@@ -34,22 +34,22 @@ pub(super) fn describe(event: &Event) -> Option<String> {
             )
         }
         Event::Verdict(verdict) => judged(verdict),
+        Event::Adaptation(record) => format!("ADAPTATION: {}", record.text),
         Event::Injection {
             fault,
             component,
             change,
         } => {
             let place = component.as_ref().map(|name| format!(" in {name}"));
-            format!(
-                "injected fault {fault} {change}{}",
-                place.unwrap_or_default()
-            )
+            let place = place.unwrap_or_default();
+            format!("injected fault {fault} {change}{place}")
         }
         Event::DatumSetAside {
             component, port, ..
         } => format!(
             "{component}: a datum of '{port}' is set aside, two incarnations died with it in work"
         ),
+        Event::TreeState { tree, from, to } => format!("tree {tree}: {from} -> {to}"),
         Event::CheckpointRestored {
             component,
             sequence,
@@ -67,7 +67,7 @@ pub(super) fn describe(event: &Event) -> Option<String> {
             level,
             message,
         } if *level != "debug" => format!("{component}: {level}: {message}"),
-        Event::Log { .. } | Event::RunStopped { .. } => return None,
+        Event::Log { .. } | Event::TreeNodes { .. } | Event::RunStopped { .. } => return None,
         Event::Notice { message } => format!("notice: {message}"),
         Event::ContainerRestarted(restart) => restarted(restart),
         Event::ContainerGivenUp { seen, .. } => format!("the container is given up: {seen}"),

@@ -47,8 +47,37 @@ pub(super) fn of(status: &Value) -> String {
     if status["emergency_stop"] == true {
         text += "EMERGENCY STOP latched; 'steadfast fault clear --all' ends it\n";
     }
+    text += &trees(&status["trees"]);
     text += "\n";
     text + &components(&status["components"])
+}
+
+/// One line for each behaviour tree: what it does.
+pub fn trees(trees: &Value) -> String {
+    let mut text = String::new();
+    for (name, tree) in trees.as_object().into_iter().flatten() {
+        let doing = tree["doing"].as_array().into_iter().flatten();
+        let doing: Vec<String> = doing.map(|path| short(&word(path))).collect();
+        let _infallible = writeln!(
+            text,
+            "tree {}: {}{}{}",
+            word(&Value::from(name.as_str())),
+            word(&tree["state"]),
+            if doing.is_empty() { "" } else { ", at " },
+            doing.join(", "),
+        );
+    }
+    text
+}
+
+/// The end of a path, which tells most.
+fn short(path: &str) -> String {
+    const NAMES: usize = 3;
+    let names: Vec<&str> = path.split('/').collect();
+    match names.len() > NAMES {
+        true => format!("…/{}", names[names.len() - NAMES..].join("/")),
+        false => path.to_owned(),
+    }
 }
 
 /// The table of components, with the last fault of each below it.
@@ -107,6 +136,8 @@ mod tests {
         let status = json!({
             "applications": {"patrol": "DEGRADED"}, "clock": "real", "time_s": 12.34,
             "emergency_stop": true,
+            "trees": {"mission": {"state": "running", "doing": ["M/a/b/c/Sleep", "M/Wait"]},
+                "rescue": {"state": "waiting", "doing": []}},
             "container": {"process": 7, "uptime_s": 12.0, "threads": 9, "restarts": 0,
                 "port_data_dropped": 3, "events_lost": 0, "symptoms_dropped": 0},
             "components": {
@@ -124,7 +155,9 @@ mod tests {
             "patrol: DEGRADED\n\
              12.3 s of real time; process 7, up 12.0 s, 9 threads, 0 restarts\n\
              dropped: 3 data of ports, 0 events, 0 symptoms\n\
-             EMERGENCY STOP latched; 'steadfast fault clear --all' ends it\n\n\
+             EMERGENCY STOP latched; 'steadfast fault clear --all' ends it\n\
+             tree mission: running, at …/b/c/Sleep, M/Wait\n\
+             tree rescue: waiting\n\n\
              COMPONENT  LEVEL  STATE   TIER     EXECUTOR        RATE/Hz  LOAD/%  OVERRUNS  INC  STANDBY\n\
              camera     WARN   ACTIVE  process  periodic 40 ms     25.0     8.0         2    3  warm spare, (loaded other)\n\
              odd\n\

@@ -12,6 +12,7 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::Paragraph;
 
 use super::model::{Dialog, Model};
+use crate::commands::status::text;
 use crate::commands::words::{number, word};
 
 /// Lines of the head.
@@ -22,7 +23,7 @@ const FEED_PERCENT: u16 = 35;
 /// Draws the model.
 pub fn draw(frame: &mut Frame<'_>, model: &Model) {
     let layout = Layout::vertical([
-        Constraint::Length(HEAD_HEIGHT),
+        Constraint::Length(HEAD_HEIGHT + tree_lines(model)),
         Constraint::Fill(1),
         Constraint::Percentage(FEED_PERCENT),
         Constraint::Length(1),
@@ -90,7 +91,19 @@ fn head_lines(model: &Model) -> Vec<Line<'_>> {
         word(&container["port_data_dropped"]),
         word(&container["events_lost"]),
     );
-    vec![Line::from(first), Line::raw(second)]
+    let trees = text::trees(&status["trees"]);
+    let trees = trees.lines().map(|line| Line::raw(line.to_owned()));
+    let lines = [Line::from(first), Line::raw(second)].into_iter();
+    lines.chain(trees).collect()
+}
+
+/// How many lines behaviour trees take.
+fn tree_lines(model: &Model) -> u16 {
+    /// More trees than this leave no room for components.
+    const MOST: usize = 4;
+    let trees = model.status["trees"].as_object().map_or(0, |it| it.len());
+    let shown = if model.absence.is_some() { 0 } else { trees };
+    u16::try_from(shown.min(MOST)).unwrap_or_default()
 }
 
 fn foot_line(model: &Model, area: Rect) -> Line<'_> {

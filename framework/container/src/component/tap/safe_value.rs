@@ -46,6 +46,13 @@ impl SafeDatum {
         }
     }
 
+    /// From now on the values are all this one.
+    pub fn set(&mut self, value: f64) {
+        for (_, own) in &mut self.values {
+            *own = value;
+        }
+    }
+
     /// The safe command, of this time.
     pub fn at(&mut self, now_ns: u64) -> &[u8] {
         for (field, value) in &self.values {

@@ -43,6 +43,7 @@ fn view() -> SystemView {
             symptoms_dropped: 0,
         },
         components: BTreeMap::from([("camera".to_owned(), camera)]),
+        trees: BTreeMap::new(),
     }
 }
 
@@ -57,6 +58,7 @@ fn verdict(id: u64, kind: &'static str, handling_us: Option<u64>) -> Event {
         rule: None,
         evidence: Evidence::Order {
             order: String::new(),
+            by: None,
         },
         symptoms: 1,
         first_symptom_ns: 0,

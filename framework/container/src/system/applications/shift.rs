@@ -45,6 +45,7 @@ pub(super) fn injection(injection: &Injection, first: usize) -> Injection {
 #[cfg(test)]
 mod tests {
     use system_model::injection::{ContainerFailure, WorldFault};
+    use system_model::rules::HandleRule;
     use system_model::specification::Place;
 
     use super::*;
@@ -77,7 +78,10 @@ mod tests {
     fn rules_of_components_lie_at_their_indices() {
         let own = ComponentRules {
             handle: Some(system_model::profile::Located {
-                value: "task.xml".to_owned(),
+                value: HandleRule {
+                    tree: "rescue".to_owned(),
+                    deadline: std::time::Duration::from_secs(1),
+                },
                 place: Place::default(),
             }),
             ..ComponentRules::default()

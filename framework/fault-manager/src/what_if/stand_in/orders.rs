@@ -22,6 +22,7 @@ pub(super) struct Order {
 enum Task {
     Reset,
     Replace(usize),
+    Adapt,
     Stop,
     Destroy,
     EmergencyStop,
@@ -36,10 +37,22 @@ impl StandIn<'_> {
                 secondary,
                 ..
             } => (component, Task::Replace(secondary)),
+            // What a tree comes to nobody can know; supposed is that it does what it is for.
+            Action::Handle { component, .. } => (component, Task::Reset),
+            Action::Adapt { component } => (component, Task::Adapt),
             Action::Stop { component } => (component, Task::Stop),
             Action::Destroy { component } => (component, Task::Destroy),
             Action::EmergencyStop => return self.stop_in_emergency(planned.id),
         };
+        if component >= self.components.len() {
+            // A behaviour tree, whose ticks are not played: what is asked of it is done.
+            let outcome = ActionOutcome::Done {
+                incarnation: 0,
+                note: String::new(),
+            };
+            let action = planned.id;
+            return self.observe(Observation::Ended { action, outcome });
+        }
         let order = Order {
             action: Some(planned.id),
             component,
@@ -75,6 +88,11 @@ impl StandIn<'_> {
         let component = order.component;
         let outcome = match order.task {
             Task::Reset | Task::Replace(_) => self.recover(component, order.task),
+            // Whether there is another way only the robot knows; it is supposed that there is.
+            Task::Adapt => match self.assumptions.recoveries {
+                Recoveries::Fail => Err("supposed to fail".to_owned()),
+                _ => Ok(()),
+            },
             Task::Stop => {
                 let own = &mut self.components[component];
                 if own.state == State::Active {

@@ -2,8 +2,8 @@
 
 use system_model::profile::Located;
 use system_model::rules::{
-    ComponentRules, DependencySeverity, FaultRule, HeartbeatRule, OverrunRule, PortChecks, Preload,
-    ProcessModelRule, VotingRule,
+    AdaptRule, ComponentRules, DependencySeverity, FaultRule, HeartbeatRule, OverrunRule,
+    PortChecks, Preload, ProcessModelRule, VotingRule,
 };
 use system_model::specification::Place;
 
@@ -68,6 +68,7 @@ pub(crate) struct DeclaredApplication {
     /// None for the application that the file is about.
     pub(crate) name: Option<Located<String>>,
     pub(crate) heartbeat: Option<Located<HeartbeatRule>>,
+    pub(crate) adapt: Option<Located<AdaptRule>>,
     pub(crate) fault: Option<Located<FaultRule>>,
     /// An application has none; whoever writes one is told.
     pub(crate) secondaries: Vec<DeclaredSecondary>,

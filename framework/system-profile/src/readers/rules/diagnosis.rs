@@ -8,7 +8,7 @@ use super::measure::{count, setting};
 use crate::node::Node;
 use crate::value::Value;
 
-pub(super) const COMPONENT_SEVERITIES: [(&str, ComponentSeverity); 4] = [
+pub(in crate::readers) const COMPONENT_SEVERITIES: [(&str, ComponentSeverity); 4] = [
     ("ignore", ComponentSeverity::Ignore),
     ("reset", ComponentSeverity::Reset),
     ("stop", ComponentSeverity::Stop),

@@ -4,14 +4,14 @@ use std::time::Duration;
 
 use system_model::profile::Located;
 use system_model::rules::{
-    ActuatorRule, DEFAULT_PERSISTED_MAX_AGE, FaultRule, MAX_RETRY_MAX, PortChecks, Preload,
-    RecoveryRule, ResurrectRule, StopCategory,
+    ActuatorRule, AdaptRule, DEFAULT_HANDLE_DEADLINE, DEFAULT_PERSISTED_MAX_AGE, FaultRule,
+    HandleRule, MAX_RETRY_MAX, PortChecks, Preload, RecoveryRule, ResurrectRule, StopCategory,
 };
 
 use super::declared::DeclaredSecondary;
 use super::detection::safe_values;
 use super::diagnosis::APPLICATION_SEVERITIES;
-use super::measure::{duration, located, positive_duration, required, setting, text};
+use super::measure::{duration, located, positive_duration, required, setting};
 use super::safe_state::safe_state;
 use crate::node::Node;
 use crate::value::Value;
@@ -214,10 +214,29 @@ fn command(node: &Node<'_>) -> Option<Command> {
     Some((port?.located(), checks))
 }
 
-/// A reference to a file of the task adaptation.
-pub(super) fn reference(node: &Node<'_>, name: &'static str) -> Option<Located<String>> {
-    let node = node.child(name)?;
-    let reference = text(&node, "reference").or_else(|| Some(node.text().as_str().to_owned()));
+/// `handle`: the tree that handles the fault.
+pub(super) fn handle(node: &Node<'_>) -> Option<Located<HandleRule>> {
+    let node = node.child("handle")?;
+    let tree = node.required_attribute("tree");
+    let deadline = node.attribute("deadline");
+    let deadline = deadline.map(|value| positive_duration(&value));
     node.finish();
-    reference.map(|reference| located(&node, reference))
+    let rule = HandleRule {
+        tree: tree?.as_str().to_owned(),
+        deadline: deadline.unwrap_or(Some(DEFAULT_HANDLE_DEADLINE))?,
+    };
+    Some(located(&node, rule))
+}
+
+/// The task that is done in another way.
+pub(super) fn adapt(node: &Node<'_>) -> Option<Located<AdaptRule>> {
+    let node = node.child("adapt")?;
+    let task = node.required_attribute("task");
+    let robot = node.attribute("robot");
+    node.finish();
+    let rule = AdaptRule {
+        task: task?.as_str().to_owned(),
+        robot: robot.map(|robot| robot.as_str().to_owned()),
+    };
+    Some(located(&node, rule))
 }

@@ -23,6 +23,7 @@ pub(crate) use declared::{
     DeclaredMonitor, DeclaredName, DeclaredRules, DeclaredSecondary, DeclaredSource,
     DeclaredVoting, EntityKind,
 };
+pub(in crate::readers) use diagnosis::COMPONENT_SEVERITIES;
 
 /// The outermost element of a rule file.
 pub(crate) const RULES_ROOT: &str = "fault_rules";
@@ -115,8 +116,8 @@ pub(crate) fn component_elements(node: &Node<'_>, name: &Located<String>) -> Dec
         recovery: handling::recovery(node),
         actuator,
         isolation: isolation::isolation(node),
-        adapt: handling::reference(node, "adapt"),
-        handle: handling::reference(node, "handle"),
+        adapt: handling::adapt(node),
+        handle: handling::handle(node),
     };
     // Evaluators and estimators belong to the task adaptation, which reads them itself.
     node.pass_over(&["evaluator", "estimator"]);
@@ -200,6 +201,7 @@ pub(crate) fn application_elements(node: &Node<'_>) -> DeclaredApplication {
     DeclaredApplication {
         name: None,
         heartbeat: conduct::heartbeat(node),
+        adapt: handling::adapt(node),
         fault,
         secondaries,
         dependencies: Vec::new(),

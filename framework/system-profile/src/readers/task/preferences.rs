@@ -104,8 +104,12 @@ pub(super) fn decision(root: &Node<'_>) -> Option<DecisionOptions> {
     let hysteresis = node
         .attribute("hysteresis")
         .map(|it| within(&it, &HYSTERESIS));
-    let [estimation, reconfiguration] = ["estimation_deadline", "reconfiguration_deadline"]
-        .map(|name| node.attribute(name).map(|it| positive_duration(&it)));
+    let [estimation, reconfiguration, evaluation] = [
+        "estimation_deadline",
+        "reconfiguration_deadline",
+        "evaluation_period",
+    ]
+    .map(|name| node.attribute(name).map(|it| positive_duration(&it)));
     node.finish();
     Some(DecisionOptions {
         confirm: confirm.unwrap_or(Some(usual.confirm))?,
@@ -114,5 +118,6 @@ pub(super) fn decision(root: &Node<'_>) -> Option<DecisionOptions> {
         estimation_deadline: estimation.unwrap_or(Some(usual.estimation_deadline))?,
         reconfiguration_deadline: reconfiguration
             .unwrap_or(Some(usual.reconfiguration_deadline))?,
+        evaluation_period: evaluation.unwrap_or(Some(usual.evaluation_period))?,
     })
 }

@@ -4,6 +4,7 @@ use system_model::task::{
     Condition, GivenEstimate, Placement, TaskInstance, TaskRobot, TaskSpecification,
 };
 
+use super::attachment;
 use super::names::{Names, bounded, declared};
 use super::structure::AMOUNT;
 use crate::node::Node;
@@ -43,6 +44,7 @@ pub(super) fn read(root: &Node<'_>, known: &Known<'_>) -> Vec<TaskRobot> {
         let robot = TaskRobot {
             name: name.clone(),
             available: amounts(node, "has", known.resources),
+            sensors: attachment::sensors(node, known.resources),
             instances: instances(node, known, &robot_names),
         };
         node.finish();
@@ -82,6 +84,7 @@ fn instances(robot: &Node<'_>, known: &Known<'_>, robots: &Names) -> Vec<TaskIns
         let component = known.components.required(&node, "component");
         let demand = amounts(&node, "needs", known.resources);
         let estimates = estimates(&node, known, robots);
+        let attachment = attachment::read(&node, known.resources);
         node.finish();
         let Some(component) = component else {
             continue;
@@ -97,6 +100,7 @@ fn instances(robot: &Node<'_>, known: &Known<'_>, robots: &Names) -> Vec<TaskIns
             component,
             demand,
             estimates,
+            attachment,
         });
     }
     instances

@@ -2,7 +2,9 @@
 
 use std::ops::RangeInclusive;
 
-use system_model::task::{ComponentClass, ComponentIndex, SubTask, TaskComponent, TaskLink};
+use system_model::task::{
+    ComponentClass, ComponentIndex, LinkPorts, SubTask, TaskComponent, TaskLink,
+};
 
 use super::names::{Names, bounded, declared};
 use crate::node::Node;
@@ -130,12 +132,23 @@ fn link(node: &Node<'_>, components: &[TaskComponent], names: &Names) -> Option<
     };
     let (from, to) = (end("from"), end("to"));
     let nodes = bounded(node.children("through"), MAX_OPTIONAL);
+    let port = |node: &Node<'_>, name| {
+        let value = node.attribute(name)?;
+        Some(value.as_str().to_owned())
+    };
     let through = nodes.iter().filter_map(|node| {
         let component = names.required(node, "component");
+        let ports = (port(node, "input"), port(node, "output"));
         node.finish();
-        of_kind(node, components, component?, false)
+        Some((of_kind(node, components, component?, false)?, ports))
     });
-    let through: Vec<ComponentIndex> = through.collect();
+    let (through, stages): (Vec<ComponentIndex>, Vec<_>) = through.unzip();
+    let ports = LinkPorts {
+        output: port(node, "output"),
+        input: port(node, "input"),
+        through: stages,
+        place: node.place(),
+    };
     node.finish();
     let (from, to) = (from?, to?);
     if from == to {
@@ -145,7 +158,12 @@ fn link(node: &Node<'_>, components: &[TaskComponent], names: &Names) -> Option<
         );
         return None;
     }
-    Some(TaskLink { from, to, through })
+    Some(TaskLink {
+        from,
+        to,
+        through,
+        ports,
+    })
 }
 
 /// A component that is essential, or is not, as its place asks for.

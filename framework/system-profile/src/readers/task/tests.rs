@@ -1,7 +1,8 @@
 use std::time::Duration;
 
 use system_model::task::{
-    Condition, DecisionOptions, GenerationOptions, GivenEstimate, HopCount, Placement,
+    Condition, ContainerFigure, DecisionOptions, GenerationOptions, GivenEstimate, HopCount,
+    Placement, QualityAttribute,
 };
 
 use super::*;
@@ -25,7 +26,7 @@ fn names_become_numbers_and_amounts_stand_by_resource() {
     assert_eq!(essential, [true, false, false, true]);
     assert_eq!(task.sub_tasks[1].components, [3]);
     assert_eq!((task.links[0].from, task.links[0].to), (0, 3));
-    assert_eq!(task.links[0].through, [1]);
+    assert_eq!(task.links[0].through, [1, 2]);
     assert_eq!(task.exclusions, [[1, 2]]);
     assert_eq!(task.robots[0].available, [2.0, 5.0]);
     assert_eq!(task.robots[1].available, [0.0, 0.0]);
@@ -51,6 +52,34 @@ fn names_become_numbers_and_amounts_stand_by_resource() {
     assert_eq!(task.running.as_deref(), Some(&running[..]));
     assert_eq!(task.generation.hops, HopCount::Essential);
     assert_eq!(task.decision.dwell, Duration::from_secs(5));
+}
+
+#[test]
+fn what_is_measured_of_a_running_robot_is_attached_to_its_instances() {
+    let outcome = load(&Document::from_bytes("task.xml", TASK.as_bytes()));
+    let task = outcome.task.expect("a good task");
+    let ports = &task.links[0].ports;
+    assert_eq!(ports.output.as_deref(), Some("picture"));
+    let (blurred, sharp) = (Some("blurred".to_owned()), Some("sharp".to_owned()));
+    assert_eq!(ports.through, [(None, None), (blurred, sharp)]);
+    let sensor = &task.robots[0].sensors[0].value;
+    assert_eq!((sensor.resource, sensor.scale), (1, 0.5));
+    let motor = &task.robots[0].instances[2].attachment;
+    assert_eq!(motor.subcomponent.as_deref(), Some("drive"));
+    assert_eq!(motor.gauges, [(0, ContainerFigure::ProcessorLoad)]);
+    let [noise, age] = &motor.evaluators[..] else {
+        panic!("{:?}", motor.evaluators);
+    };
+    let window = QualityAttribute::StandardDeviation { window: 30 };
+    assert_eq!(noise.value.attribute, window);
+    assert_eq!((noise.value.target, noise.value.scale), (-1.0, 2.0));
+    assert_eq!(age.value.attribute, QualityAttribute::Age);
+    assert_eq!((age.value.target, age.value.scale), (0.0, 1.0));
+    let estimator = motor.estimator.as_ref().expect("an estimator");
+    assert_eq!(estimator.value.cycles, 2);
+    let own = ("estimate".to_owned(), Some("error".to_owned()));
+    assert_eq!(estimator.value.own, Some(own));
+    assert_eq!(task.decision.evaluation_period, Duration::from_millis(5));
 }
 
 #[test]

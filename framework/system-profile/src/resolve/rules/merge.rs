@@ -7,8 +7,8 @@ use std::collections::HashMap;
 
 use system_model::profile::Located;
 use system_model::rules::{
-    ComponentRules, DependencyRule, ExecutorRules, FaultRule, HeartbeatRule, MonitorRule,
-    PortChecks, VotingSpecification,
+    AdaptRule, ComponentRules, DependencyRule, ExecutorRules, FaultRule, HeartbeatRule,
+    MonitorRule, PortChecks, VotingSpecification,
 };
 use system_model::specification::Place;
 
@@ -27,6 +27,7 @@ use combine::{Combine, Mode};
 pub(super) struct Merged {
     pub(super) fault: Option<Located<FaultRule>>,
     pub(super) heartbeat: Option<Located<HeartbeatRule>>,
+    pub(super) adapt: Option<Located<AdaptRule>>,
     /// One for each component of the application.
     pub(super) components: Vec<MergedComponent>,
     pub(super) executors: Vec<ExecutorRules>,
@@ -158,6 +159,7 @@ fn own_rules(
     }
     combine.slot("fault", &mut merged.fault, own.fault);
     combine.slot("heartbeat", &mut merged.heartbeat, own.heartbeat);
+    combine.slot("adapt", &mut merged.adapt, own.adapt);
 }
 
 fn resolved_executor(
@@ -189,7 +191,12 @@ fn report_foreign(
     name: &Located<String>,
     application: &DeclaredApplication,
 ) {
-    if application.fault.is_some() || application.heartbeat.is_some() {
+    let rules = [
+        application.fault.is_some(),
+        application.heartbeat.is_some(),
+        application.adapt.is_some(),
+    ];
+    if rules.contains(&true) {
         assembly.report_at(
             Severity::Error,
             &name.place,

@@ -224,6 +224,7 @@ pub(crate) fn check_component(
         manager_connections: Vec::new(),
         coordination: Vec::new(),
         world: None,
+        trees: Vec::new(),
     };
     assembly.sites.push(Site {
         profile: Rc::clone(file),
@@ -258,6 +259,7 @@ pub(crate) fn check_system(assembly: &mut Assembly<'_>, file: &Rc<LoadedFile>) {
         manager_connections: Vec::new(),
         coordination: Vec::new(),
         world: None,
+        trees: Vec::new(),
     };
     resolve_declared(
         assembly,

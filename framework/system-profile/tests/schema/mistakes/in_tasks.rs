@@ -64,6 +64,22 @@ pub const MISTAKES: &[Edit] = &[
         "<use component=\"motor\" robot=\"R1\"/>",
         "<use component=\"motor\"/>",
     ),
+    (
+        "task.xml",
+        "measures=\"standard_deviation\"",
+        "measures=\"deviation\"",
+    ),
+    ("task.xml", "window=\"30\"", "window=\"1\""),
+    ("task.xml", "scale=\"2\"", "scale=\"0\""),
+    ("task.xml", "cycles=\"2\"", "cycles=\"0\""),
+    ("task.xml", "by=\"processor_load\"", "by=\"load\""),
+    ("task.xml", "<gauge resource=\"power\"", "<gauge"),
+    (
+        "task.xml",
+        "evaluation_period=\"5ms\"",
+        "evaluation_period=\"0\"",
+    ),
+    ("rules.xml", "<adapt task=\"a.xml\"", "<adapt"),
 ];
 
 /// What only the reader can know, with the reason.

@@ -6,6 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use container::adaptation::AdaptationRequests;
 use container::assembly::assemble;
 use container::clock::Clock;
 use container::component::Environment;
@@ -111,6 +112,7 @@ fn environment() -> io::Result<Arc<Environment>> {
         scenes: container::supervision::Scenes::default(),
         world: None,
         score: None,
+        adaptation_requests: AdaptationRequests::default(),
         busy: BusyTime::default(),
     }))
 }

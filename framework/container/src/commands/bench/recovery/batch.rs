@@ -147,7 +147,9 @@ pub(super) fn load(folder: &Path) -> io::Result<Application> {
         specification,
         rules,
         models: Vec::new(),
+        plans: Vec::new(),
         injections,
+        task: None,
     })
 }
 

@@ -149,10 +149,9 @@ impl Group {
         let kills_host = self.fault == Fault::HostKilled;
         match (self.tier, handling) {
             (_, Handling::EmergencyStop) => 3,
-            (Tier::Process, _) if uses_standby && kills_host && load_percent > 60 => 16,
+            (Tier::Process, _) if uses_standby && kills_host && load_percent > 60 => 20,
             (Tier::Process, Handling::SecondaryCold) => 10,
-            (Tier::Process, _) if uses_standby && kills_host => 10,
-            (Tier::Process, _) if uses_standby => 8,
+            (Tier::Process, _) if uses_standby => 10,
             (Tier::Guarded, Handling::SecondaryCold) => 3,
             (Tier::Guarded, _) if uses_standby => match load_percent {
                 0..=40 => 2,
@@ -173,7 +172,8 @@ impl Group {
 /// there is one for each fault, and more only of hosts that are killed.
 ///
 /// An emergency stop stops everything, so it has an application of its own; how it comes about does
-/// not matter to it, nor does the tier, so it is measured for a component that dies and for bad data.
+/// not matter to it, nor does the tier, so it is measured for a component that dies; of all rows there
+/// is one for bad data, too.
 pub(super) fn groups(all: bool) -> Vec<Group> {
     let stop = |fault| Group {
         tier: Tier::Guarded,
@@ -186,7 +186,8 @@ pub(super) fn groups(all: bool) -> Vec<Group> {
         possible.map(move |fault| recoveries(tier, fault, all))
     };
     let mut groups: Vec<Group> = of_tier(Tier::Guarded).collect();
-    groups.extend([Fault::Trap, Fault::OutOfRange].map(stop));
+    let bad_data = all.then_some(Fault::OutOfRange);
+    groups.extend([Fault::Trap].into_iter().chain(bad_data).map(stop));
     groups.extend(of_tier(Tier::Process));
     groups
 }
@@ -204,14 +205,11 @@ fn recoveries(tier: Tier, fault: Fault, all: bool) -> Group {
 
 /// Whether a row differs from others in more than detection.
 fn is_telling(tier: Tier, fault: Fault, handling: Handling) -> bool {
-    use Handling::{
-        Reset, ResetCheckpoint, SecondaryCold, SecondaryLoaded, SecondaryWarm, StandbyWarm,
-    };
+    use Handling::{Reset, ResetCheckpoint, SecondaryLoaded, SecondaryWarm, StandbyWarm};
     match (tier, fault) {
         (Tier::Guarded, Fault::Trap) => true,
-        (Tier::Guarded, Fault::ErrorReturn) => !matches!(handling, Reset | SecondaryCold),
+        (Tier::Guarded, Fault::ErrorReturn) => matches!(handling, ResetCheckpoint | SecondaryWarm),
         (Tier::Guarded, Fault::OutOfRange) => matches!(handling, ResetCheckpoint | SecondaryWarm),
-        (Tier::Guarded, Fault::Hang) => matches!(handling, ResetCheckpoint | StandbyWarm),
         (Tier::Guarded, _) => handling == StandbyWarm,
         // A reset has a second copy that is loaded, as this secondary is.
         (Tier::Process, Fault::HostKilled) => handling != SecondaryLoaded && handling != Reset,

@@ -28,6 +28,22 @@ const STATES: [&str; 6] = [
     "DESTROYED",
 ];
 
+/// The colour of a state; of what a tree or a node of one has come to, that of a component that is
+/// about as far. A node that is idle has none.
+fn class(state: &str) -> Option<&'static str> {
+    Some(match state {
+        "IDLE" | "SKIPPED" | "WAITING" => return None,
+        "RUNNING" => "ACTIVE",
+        "SUCCESS" => "READY",
+        "FAILURE" | "STOPPED" => "INACTIVE",
+        "FAILED" => "ERROR",
+        other => STATES
+            .into_iter()
+            .find(|it| *it == other)
+            .unwrap_or("other"),
+    })
+}
+
 /// The bar. What is narrower than a pixel is seen in what is beside it, but an error always.
 pub(super) fn spans(changes: &[StateChange], end_ns: u64, time: &Scale) -> Vec<Span> {
     let ends = changes.iter().skip(1).map(|next| next.t_ns).chain([end_ns]);
@@ -43,15 +59,21 @@ pub(super) fn spans(changes: &[StateChange], end_ns: u64, time: &Scale) -> Vec<S
         if width < 1.0 && !is_error {
             continue;
         }
-        let known = STATES.into_iter().find(|it| *it == change.to);
+        let instance = match change.incarnation {
+            // Of a tree, or a node of one.
+            0 => String::new(),
+            number => format!(" (incarnation {number})"),
+        };
+        let Some(state) = class(&change.to) else {
+            continue;
+        };
         spans.push(Span {
             x,
             width: width.max(LEAST_WIDTH),
-            state: known.unwrap_or("other"),
+            state,
             what: format!(
-                "{} (incarnation {}) from {} to {}",
+                "{}{instance} from {} to {}",
                 change.to,
-                change.incarnation,
                 at(change.t_ns),
                 at(until_ns)
             ),

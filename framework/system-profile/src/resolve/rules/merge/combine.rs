@@ -40,6 +40,7 @@ impl<'a> Combine<'a> {
     pub(super) fn all(&self, older: &mut Merged, newer: Merged) {
         self.slot("fault", &mut older.fault, newer.fault);
         self.slot("heartbeat", &mut older.heartbeat, newer.heartbeat);
+        self.slot("adapt", &mut older.adapt, newer.adapt);
         for (older, newer) in older.components.iter_mut().zip(newer.components) {
             self.component(older, newer);
         }
