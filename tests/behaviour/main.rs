@@ -35,6 +35,7 @@ mod recovery;
 mod reference_model;
 mod reference_robot;
 mod report;
+mod robots;
 mod scenarios;
 mod services;
 mod several_applications;

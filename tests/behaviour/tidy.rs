@@ -11,7 +11,7 @@ use tests::{Watched, repository};
 
 /// Which crates of the workspace each crate of the framework may build on; development
 /// dependencies do not count. A new crate gets its place here.
-const FRAMEWORK: [(&str, &[&str]); 13] = [
+const FRAMEWORK: [(&str, &[&str]); 14] = [
     ("component-abi", &[]),
     ("component-sdk-derive", &[]),
     ("component-sdk", &["component-abi", "component-sdk-derive"]),
@@ -24,6 +24,7 @@ const FRAMEWORK: [(&str, &[&str]); 13] = [
     ("robot-interface", &["component-sdk"]),
     ("robot-simulation", &["robot-interface", "system-model"]),
     ("robot-vision", &[]),
+    ("robot-network", &["system-model"]),
     (
         "container",
         &[
@@ -31,6 +32,7 @@ const FRAMEWORK: [(&str, &[&str]); 13] = [
             "component-abi",
             "fault-manager",
             "recording",
+            "robot-network",
             "robot-simulation",
             "system-model",
             "system-profile",

@@ -1,10 +1,11 @@
 //! Visual servoing on real pixels: in smoke the tracker loses the target unless the picture is
 //! cleared.
 
-use std::path::Path;
+use std::net::TcpListener;
+use std::path::{Path, PathBuf};
 
 use recording::read;
-use tests::{Application, repository};
+use tests::{Application, repository, take_turn};
 
 /// When smoke blows in, in the world of both applications.
 const SMOKE_NS: u64 = 4_400_000_000;
@@ -83,4 +84,54 @@ fn with_the_dehazer_the_tracking_error_stays_low() {
         );
         assert!(keeps_the_target_in_the_middle(&tracked), "seed {seed}");
     }
+}
+
+/// A port that nobody listens at.
+fn free_port() -> u16 {
+    let listener = TcpListener::bind(("127.0.0.1", 0)).expect("a free port");
+    listener.local_addr().expect("its address").port()
+}
+
+/// The shipped files of two robots, with ports that are free.
+fn robots_at(run: &Application) -> [PathBuf; 2] {
+    let ports = [free_port(), free_port()].map(|port| port.to_string());
+    ["visual_servoing_r1", "visual_servoing_r2"].map(|name| {
+        let file = format!("{name}.xml");
+        let shipped = repository().join("profiles/applications").join(&file);
+        let text = std::fs::read_to_string(shipped).expect("a shipped file");
+        run.write(
+            &file,
+            text.replace("7447", &ports[0]).replace("7448", &ports[1]),
+        )
+    })
+}
+
+/// A camera on one robot, a dehazer on the other, and back: by the machine's clock, over loopback.
+#[test]
+fn another_robot_clears_the_pictures() {
+    let _turn = take_turn();
+    let (first, second) = (Application::new(), Application::new());
+    let files = robots_at(&first);
+    let recording = first.folder().join("run.mcap");
+    let search = |folder: &str| repository().join(folder).display().to_string();
+    let (components, worlds) = (search("profiles/components"), search("profiles/worlds"));
+    let paths = ["--search-path", &components, "--search-path", &worlds];
+    let _clearing = second.start_files(&files[1..], &paths);
+    second.wait_until(|events| events.contains("\"to\":\"ACTIVE\""));
+    let record = [
+        "--for",
+        "9s",
+        "--record",
+        recording.to_str().expect("a path"),
+    ];
+    let _ended = first
+        .run_together(&files[..1], &[&paths[..], &record].concat())
+        .ended_well();
+    let tracked = tracked(&recording);
+    let smoky = tracked.iter().filter(|it| it.time_ns > SMOKE_NS);
+    let low = smoky.clone().filter(|it| it.error < LOST_ERROR).count();
+    // A busy machine may lose pictures; those that came were cleared.
+    assert!(low > 20, "{low} pictures of {} in smoke", smoky.count());
+    assert_eq!(low, smoky.count(), "some were not");
+    assert!(keeps_the_target_in_the_middle(&tracked));
 }

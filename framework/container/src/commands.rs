@@ -14,6 +14,7 @@ pub mod manual;
 pub mod new;
 mod operator;
 mod output;
+pub mod package;
 pub mod problems;
 pub mod replay;
 pub mod report;

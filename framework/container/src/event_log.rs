@@ -165,6 +165,16 @@ pub enum Event {
         /// Robot time in seconds.
         time_s: f64,
     },
+    /// Something about a robot of the network.
+    Robot {
+        /// Its name.
+        robot: String,
+        /// `appeared`, `died`, `decides`, `refused` (data of it), `fault` (of one of its components),
+        /// `namesake`, `unintelligible`.
+        change: &'static str,
+        /// What is to be known of it.
+        message: String,
+    },
     /// The application has stopped.
     RunStopped {
         /// Why.
@@ -208,6 +218,8 @@ pub struct EventLog {
     lost: AtomicU64,
     /// Who gets every event, too.
     recording: Option<Sender<(u64, Event)>>,
+    /// Who gets every verdict, too, if there is room.
+    listener: Option<Sender<(u64, Event)>>,
 }
 
 /// The thread that writes; to be closed when all has been said.
@@ -263,6 +275,7 @@ impl EventLog {
             waits,
             lost: AtomicU64::new(0),
             recording: None,
+            listener: None,
         };
         Ok((log, EventWriter { thread }))
     }
@@ -274,6 +287,7 @@ impl EventLog {
             waits: false,
             lost: AtomicU64::new(0),
             recording: None,
+            listener: None,
         }
     }
 
@@ -283,10 +297,20 @@ impl EventLog {
         Self { recording, ..self }
     }
 
+    /// Somebody gets every verdict, too, as far as there is room.
+    #[must_use]
+    pub fn heard_by(self, listener: Option<Sender<(u64, Event)>>) -> Self {
+        Self { listener, ..self }
+    }
+
     /// Records an event at a time of the application's clock.
     pub fn record(&self, t_ns: u64, event: Event) {
         if let Some(recording) = &self.recording {
             self.pass_on(recording, (t_ns, event.clone()));
+        }
+        if let (Some(listener), Event::Verdict(_)) = (&self.listener, &event) {
+            // Full: the verdict is on record here.
+            let _unheard = listener.try_send((t_ns, event.clone()));
         }
         self.pass_on(&self.sender, Some(Line { t_ns, event }));
     }

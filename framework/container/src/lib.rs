@@ -22,6 +22,7 @@ pub mod lane;
 pub mod library;
 pub mod metrics;
 pub mod mission;
+pub mod network;
 pub mod outer_supervision;
 pub mod persistence;
 pub mod port;

@@ -18,6 +18,7 @@ use commands::fault::{self, FaultArguments};
 use commands::graph::{self, GraphArguments};
 use commands::man::{self, ManArguments};
 use commands::new::{self, NewArguments};
+use commands::package::{self, PackageArguments};
 use commands::replay::{self, ReplayArguments};
 use commands::report::{self, ReportArguments};
 use commands::run::{self, RunArguments};
@@ -83,6 +84,11 @@ enum Command {
     /// each by its errors and by the resources that it leaves, and says which one would be chosen and
     /// why not the others.
     Adapt(AdaptArguments),
+    /// Sign, check, fetch and unpack components that go from robot to robot.
+    ///
+    /// A package has a component's library and profile. Nothing of one is unpacked unless a key that
+    /// is trusted has signed it, for this architecture and this version of the ABI.
+    Package(PackageArguments),
     /// Write a project that builds, runs and passes its own test: a component or an application.
     ///
     /// The project lies in a new folder of its name. It refers to the SDK of a clone of Steadfast,
@@ -134,6 +140,7 @@ fn main() -> ExitCode {
     match arguments.command {
         Command::Check(arguments) => check::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Package(arguments) => package::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
         Command::Status(arguments) => status::run(&arguments),
         Command::Top(arguments) => top::run(&arguments),

@@ -22,12 +22,13 @@ use std::time::{Duration, Instant};
 use robot_simulation::Simulation;
 use system_model::specification::ApplicationSpecification;
 
-use crate::assembly::{Assembly, Link, assemble_together};
+use crate::assembly::{Link, assemble_together};
 use crate::component::{ComponentCell, Environment};
 use crate::event_log::{Event, EventWriter};
 use crate::lane::{Crew, Lane, remaining};
 use crate::library::PortDescription;
 use crate::mission::{Calls, MissionThreads, Runner, TreeStatus};
+use crate::network::{self, Network};
 use crate::recording::RecordingThread;
 use crate::status::{ComponentStatus, Meter};
 use crate::summary::Summary;
@@ -80,6 +81,8 @@ pub struct System {
     persistence: Persistence,
     writer: EventWriter,
     recording: Option<RecordingThread>,
+    /// Ends first: nothing comes in any more when components are stopped.
+    network: Option<Network>,
 }
 
 impl System {
@@ -101,6 +104,7 @@ impl System {
         let world = outside.or_else(|| simulation.map(|it| Arc::new(World::new(it, real))));
         let (mut recorder, recorded) = options.recorder();
         let (events, writer) = options.open_events(recorded)?;
+        let (events, network) = network::hear(events, options.network.take());
         let environment = options.environment(events, world.clone());
         let applications = Applications::new(applications);
         let specification = &applications.specification;
@@ -113,6 +117,7 @@ impl System {
         )
         .map_err(StartError::Assembly)?;
         let names = specification.components.iter().map(|it| it.name.clone());
+        let ports = network::connect(network, &applications.firsts(), specification, &assembly);
         environment.injections.prepare(names, options.seed);
         let injections = options.injections(&applications.injections);
         inject(&injections, &assembly, &environment).map_err(StartError::Assembly)?;
@@ -130,14 +135,7 @@ impl System {
         let meter = Arc::new(real_time::meter(&assembly.statuses, &assembly.executors));
         let adaptations = adaptation::adapt(&applications, &assembly, &environment, &meter)?;
         let persistence = Persistence::new(&applications, &assembly.factories);
-        let Assembly {
-            components,
-            statuses,
-            executors,
-            interfaces,
-            links,
-            ..
-        } = assembly;
+        let network = network::enter(ports, &environment)?;
         let system = Self {
             applications: applications.names(),
             specification: applications.specification,
@@ -145,12 +143,16 @@ impl System {
             environment,
             world,
             world_thread: None,
-            left_behind: components.iter().map(|_| AtomicBool::new(false)).collect(),
-            components: components.into(),
-            interfaces: interfaces.into(),
-            statuses,
+            left_behind: assembly
+                .components
+                .iter()
+                .map(|_| AtomicBool::new(false))
+                .collect(),
+            components: assembly.components.into(),
+            interfaces: assembly.interfaces.into(),
+            statuses: assembly.statuses,
             meter,
-            links: links.into(),
+            links: assembly.links.into(),
             began,
             crew: Crew::new()?,
             lanes: Vec::new(),
@@ -162,8 +164,9 @@ impl System {
             persistence,
             writer,
             recording,
+            network,
         };
-        system.begin(executors, adaptations, runners, wanted)
+        system.begin(assembly.executors, adaptations, runners, wanted)
     }
 
     /// Why the run is over, if it is: waits at most `limit` for that. Rates and loads are counted
@@ -196,6 +199,7 @@ impl System {
     /// Stops everything in order and says what the run came to.
     pub fn stop(mut self, reason: &'static str) -> (Summary, Option<std::io::Error>) {
         let mut summary = self.summary(reason);
+        drop(self.network.take());
         let deadline = Instant::now() + STOP_LIMIT;
         self.mission_threads.stop(deadline);
         self.manager_threads.stop(&self.supervisor);

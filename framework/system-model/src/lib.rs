@@ -10,6 +10,7 @@ pub mod fault;
 pub mod injection;
 pub mod life_cycle;
 pub mod mission;
+pub mod network;
 pub mod process_model;
 pub mod profile;
 pub mod rules;

@@ -1,6 +1,7 @@
 //! What each kind of profile says, one file at a time, before references between files are resolved.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use crate::mission::DeclaredTree;
 use crate::specification::{ExecutionSemantics, Place, PortDirection, PortKind, PortSpecification};
@@ -130,6 +131,8 @@ pub struct ApplicationProfile {
     pub coordination: Vec<CoordinationRule>,
     /// File of the simulated world that the application drives in.
     pub world: Option<Located<String>>,
+    /// How the robot enters the network.
+    pub network: Option<Box<NetworkProfile>>,
     /// Behaviour trees, in document order.
     pub trees: Vec<TreeReference>,
 }
@@ -143,6 +146,38 @@ pub struct TreeReference {
     pub main: Option<Located<String>>,
     /// All else.
     pub declared: DeclaredTree,
+}
+
+/// `network`: how a robot enters the network, and which ports lead into it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NetworkProfile {
+    /// Name of the robot.
+    pub robot: Located<String>,
+    /// Addresses that it listens at.
+    pub listen: Vec<String>,
+    /// Addresses of other robots.
+    pub connect: Vec<String>,
+    /// Whether other robots are looked for by multicast.
+    pub scouting: bool,
+    /// Who is silent for so long is dead.
+    pub silence_limit: Duration,
+    /// Folder with sealed packages of components, as written.
+    pub packages: Option<String>,
+    /// Outputs that other robots may listen to.
+    pub offers: Vec<ConnectionEnd>,
+    /// Inputs that other robots feed.
+    pub connections: Vec<RemoteConnection>,
+}
+
+/// `remote_connection`: an input that another robot feeds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RemoteConnection {
+    /// The other robot.
+    pub robot: Located<String>,
+    /// An output of it.
+    pub source: ConnectionEnd,
+    /// An input of this robot.
+    pub target: ConnectionEnd,
 }
 
 /// `composite_component_profile`: components that are used as one.

@@ -208,6 +208,7 @@ fn time_cycles(length: usize, count: u64, monitored: bool) -> Duration {
         let ports = vec![
             PortEnd::DataInput(DataInput {
                 source: arriving.replace(receiver),
+                newest_from_afar: None,
                 tap: None,
                 size: size_of::<Sample>(),
             }),

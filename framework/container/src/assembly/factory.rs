@@ -175,6 +175,7 @@ fn unconnected(port: &PortDescription) -> PortEnd {
         (PortKind::Data, PortDirection::Input) => PortEnd::DataInput(DataInput {
             size,
             source: None,
+            newest_from_afar: None,
             tap: None,
         }),
         (PortKind::Data, PortDirection::Output) => PortEnd::DataOutput(DataOutput {

@@ -191,6 +191,21 @@ Exit codes:
   1  the file has problems, or no candidate is feasible
   2  the file cannot be read, or the output cannot be written";
 
+/// Of `package`.
+pub const PACKAGE: &str = "\
+Examples:
+  steadfast package key signing.key > trusted.keys
+  steadfast package seal software_dehazer.xml --key signing.key --output software_dehazer.sfp
+  steadfast package open software_dehazer.sfp --trust trusted.keys --into components
+  steadfast package fetch software_dehazer --from R2 --connect tcp/192.168.0.2:7447 --trust trusted.keys --into components
+
+Exit codes:
+  0  done
+  1  refused: not signed by a trusted key, cut short, tampered with, for another machine
+  2  a file cannot be read or written, or the robot does not answer
+  3  the library is not found
+  6  the network cannot be entered";
+
 /// Of `bench`.
 pub const BENCH: &str = "\
 Examples:

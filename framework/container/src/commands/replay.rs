@@ -122,6 +122,7 @@ fn replay(arguments: &ReplayArguments) -> Result<Replayed, Failed> {
             ..RecordingOptions::default()
         },
         supervised: None,
+        network: None,
     };
     let system = System::start(vec![application], None, options).map_err(|it| refused(&it))?;
     let progress = text::Progress::new(&score);

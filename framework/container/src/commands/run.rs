@@ -6,6 +6,7 @@ mod failure;
 mod libraries;
 mod live;
 mod models;
+mod network;
 mod observers;
 mod recording;
 mod report;
@@ -172,6 +173,7 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         score: None,
         recording: arguments.observers.shown(arguments.recording.options()),
         supervised: supervised.clone(),
+        network: network::of(&arguments.sources(), arguments.clock)?,
     };
     let started = System::start(applications, simulation, options);
     let system = started.map_err(|error| refused(&error))?;

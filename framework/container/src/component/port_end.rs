@@ -6,7 +6,9 @@ use fault_manager::DetectorId;
 
 use super::cell::ComponentCell;
 use super::tap::{InputTap, OutputTap};
-use crate::port::{Datum, Leftover, MOST_DEATHS, MailReceiver, MailSender, Receiver, Sender};
+use crate::port::{
+    Datum, Leftover, MOST_DEATHS, MailReceiver, MailSender, Newest, Receiver, Sender,
+};
 use crate::recording::EventRecorder;
 use crate::wake::Wake;
 
@@ -32,6 +34,8 @@ pub struct DataInput {
     pub size: usize,
     /// What arrives; none if nothing is connected.
     pub source: Option<Receiver>,
+    /// Where the time of the newest datum is left, if another robot feeds it.
+    pub newest_from_afar: Option<Arc<Newest>>,
     /// What rules want to know or to change; none without rules.
     pub tap: Option<Box<InputTap>>,
 }

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use crossbeam::channel::Sender;
 use system_model::injection::Injection;
+use system_model::network::NetworkSpecification;
 
 use super::StartError;
 use crate::adaptation::AdaptationRequests;
@@ -64,6 +65,8 @@ pub struct RunOptions {
     pub recording: RecordingOptions,
     /// The parent that supervises this container, if one does.
     pub supervised: Option<Arc<Supervised>>,
+    /// The place in the network of one of the applications, which is given by its number.
+    pub network: Option<(usize, NetworkSpecification)>,
 }
 
 /// Where checkpoints lie that outlive the container, and what becomes of those that are there.

@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 
 use super::{BRING_UP_LIMIT, Failure};
+use robot_network::NodeError;
+
 use crate::assembly::AssemblyProblem;
 
 /// Why an application did not start. Nothing of it runs.
@@ -43,6 +45,9 @@ pub enum StartError {
         /// Why.
         error: std::io::Error,
     },
+    /// The network of robots cannot be entered.
+    #[error("{0}")]
+    Network(NodeError),
     /// The system refused threads or files.
     #[error(
         "the container cannot run: {0}\n  help: see the limits of this user and machine: threads, open files, memory"

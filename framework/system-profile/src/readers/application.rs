@@ -7,8 +7,8 @@ use system_model::profile::{
 
 use super::header::{self, required_attribute, required_text};
 use super::mission;
-use super::ports;
 use super::{APPLICATION_RULES, COMPONENT_RULES};
+use super::{network, ports};
 use crate::node::Node;
 
 /// Reads an application profile.
@@ -21,6 +21,7 @@ pub(super) fn read(root: &Node<'_>) -> ApplicationProfile {
         connections: connections(root),
         coordination: coordination(root),
         world: world(root),
+        network: network::read(root).map(Box::new),
         trees: mission::trees(root),
     }
 }
@@ -95,7 +96,8 @@ fn connection(node: &Node<'_>) -> Option<PortConnection> {
     })
 }
 
-fn end(node: &Node<'_>) -> ConnectionEnd {
+/// A component and one of its ports.
+pub(super) fn end(node: &Node<'_>) -> ConnectionEnd {
     let end = ConnectionEnd {
         component: required_attribute(node, "component_name"),
         port: required_attribute(node, "port_name"),

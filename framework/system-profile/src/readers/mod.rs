@@ -8,6 +8,7 @@ mod execution;
 mod header;
 pub(crate) mod injection;
 mod mission;
+mod network;
 mod ports;
 mod process_model;
 mod project;

@@ -8,6 +8,7 @@ pub(crate) mod injections;
 mod instances;
 mod manager;
 mod missions;
+mod network;
 mod ports;
 mod references;
 pub(crate) mod rules;
@@ -16,6 +17,7 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use behavior_tree::Plan;
+use system_model::network::NetworkSpecification;
 use system_model::profile::{ApplicationProfile, CompositeProfile, Profile};
 use system_model::specification::{
     ApplicationSpecification, ComponentSpecification, ManagerConnection,
@@ -55,6 +57,8 @@ impl Default for LoadOptions {
 pub struct LoadOutcome {
     /// The application, if no file has an error and no reference dangles.
     pub specification: Option<ApplicationSpecification>,
+    /// The robot's place in the network, if the application has one; as sound as the specification.
+    pub network: Option<NetworkSpecification>,
     /// The plans of its behaviour trees, in the order of the specification.
     pub plans: Vec<Plan>,
     /// All problems of all files involved, file by file in the order they were opened.
@@ -88,6 +92,7 @@ pub fn load_application(path: &Path, options: &LoadOptions) -> LoadOutcome {
     problems.extend(reports.flat_map(|report| report.problems.iter().cloned()));
     LoadOutcome {
         specification: specification.filter(|_| assembly.is_sound()),
+        network: assembly.network.take().filter(|_| assembly.is_sound()),
         plans: std::mem::take(&mut assembly.plans),
         problems,
     }
@@ -105,6 +110,7 @@ pub(crate) struct Assembly<'o> {
     open_composites: Vec<PathBuf>,
     instances: usize,
     dangling: bool,
+    network: Option<NetworkSpecification>,
     /// Where each of the components comes from, in the same order.
     sites: Vec<Site>,
     /// The composites that were expanded, and what the names of their members begin with.
@@ -126,6 +132,7 @@ impl<'o> Assembly<'o> {
             open_composites: Vec::new(),
             instances: 0,
             dangling: false,
+            network: None,
             sites: Vec::new(),
             expanded: Vec::new(),
             plans: Vec::new(),
@@ -142,6 +149,9 @@ impl<'o> Assembly<'o> {
         let scope = self.members(file, &profile.subcomponents, "", "");
         self.connect(&scope, &profile.connections);
         self.coordinate(&scope, &profile.coordination);
+        let network = profile.network.as_deref();
+        let beside = profile.header.file.parent().unwrap_or(Path::new(""));
+        self.network = network.map(|network| self.network(&scope, network, beside));
         let world = profile
             .world
             .as_ref()

@@ -110,6 +110,26 @@ const READER_ONLY: &[(&str, Edit)] = &[
         ("garden.xml", "port_name=\"dry\"", "port_name=\"wet\""),
     ),
     (
+        "a name in another file or elsewhere in this one",
+        ("garden.xml", "port_name=\"setting\"", "port_name=\"alarm\""),
+    ),
+    (
+        "a name in another file or elsewhere in this one",
+        (
+            "garden.xml",
+            "<offer component_name=\"pump\" port_name=\"flow\"/>",
+            "<offer component_name=\"pump\" port_name=\"command\"/>",
+        ),
+    ),
+    (
+        "a time of 0, whatever its unit",
+        (
+            "garden.xml",
+            "silence_limit=\"400ms\"",
+            "silence_limit=\"0s\"",
+        ),
+    ),
+    (
         "a file that is not there",
         (
             "garden.xml",

@@ -68,6 +68,7 @@ pub fn run(plan: &Plan) -> Outcome {
         score: None,
         recording: RecordingOptions::default(),
         supervised: None,
+        network: None,
     };
     let system = System::start(vec![application], None, options).expect("it starts");
     allocations::look_at(thread_named("source"));

@@ -248,6 +248,12 @@ fn in_words(kind: &str, event: &Value) -> Option<String> {
             number(event, "without_container_us") as f64 / 1e6
         ),
         "container_given_up" => format!("{}; {}", field("seen"), field("judged")),
+        "robot" => format!(
+            "robot {}: {}: {}",
+            field("robot"),
+            field("change"),
+            field("message")
+        ),
         "tree_state" => format!(
             "tree {}: {} -> {}",
             field("tree"),

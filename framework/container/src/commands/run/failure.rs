@@ -32,7 +32,7 @@ pub(in crate::commands) fn refused(error: &StartError) -> Failed {
         | StartError::Hangs { .. }
         | StartError::NothingToBackUp { .. } => exit_code::COMPONENT,
         StartError::Output { .. } => exit_code::FILE,
-        StartError::System(_) => exit_code::SYSTEM,
+        StartError::System(_) | StartError::Network(_) => exit_code::SYSTEM,
     };
     Failed {
         code,

@@ -71,10 +71,23 @@ pub(super) fn describe(event: &Event) -> Option<String> {
         Event::Notice { message } => format!("notice: {message}"),
         Event::ContainerRestarted(restart) => restarted(restart),
         Event::ContainerGivenUp { seen, .. } => format!("the container is given up: {seen}"),
+        Event::Robot { .. } => of_robot(event),
         Event::TargetReached { time_s } => {
             format!("the robot has reached its target ({time_s:.2} s)")
         }
     })
+}
+
+/// What has changed among robots.
+fn of_robot(event: &Event) -> String {
+    match event {
+        Event::Robot {
+            robot,
+            change,
+            message,
+        } => format!("robot {robot}: {change}: {message}"),
+        _ => String::new(),
+    }
 }
 
 /// What became of the container before this one.

@@ -222,6 +222,17 @@ impl Target<'_> {
         }
     }
 
+    /// Where that time is left if another robot feeds the input.
+    fn newest_from_afar(&self) -> Option<Arc<Newest>> {
+        let mut newest = None;
+        self.subjects.with_component(self.component, |component| {
+            if let Some(PortEnd::DataInput(input)) = component.services_mut().port_mut(self.index) {
+                newest.clone_from(&input.newest_from_afar);
+            }
+        });
+        newest
+    }
+
     /// Where the time of the input's newest datum is left: at the other end of its connection. An
     /// input that nothing is connected to never has one.
     fn newest(&self) -> Option<Arc<Newest>> {
@@ -229,11 +240,10 @@ impl Target<'_> {
         let is_here = |end: &system_model::specification::PortReference| {
             end.component == self.component && end.port == self.port.name
         };
-        let source = connections
-            .iter()
-            .find(|it| is_here(&it.target))?
-            .source
-            .clone();
+        let Some(connection) = connections.iter().find(|it| is_here(&it.target)) else {
+            return self.newest_from_afar();
+        };
+        let source = connection.source.clone();
         let (index, _) = self.subjects.port(source.component, &source.port)?;
         // The n-th connection of an output, in document order, as they were made.
         let position = connections

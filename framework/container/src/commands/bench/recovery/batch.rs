@@ -81,6 +81,7 @@ fn measure(arguments: &BatchArguments) -> io::Result<Vec<Row>> {
         score: None,
         recording: RecordingOptions::default(),
         supervised: None,
+        network: None,
     };
     let system = System::start(vec![application], None, options).map_err(io::Error::other)?;
     // Above the load, below everything that is measured. Not before the system's threads are there,

@@ -1,0 +1,198 @@
+//! What robots say to each other besides data of ports, as JSON.
+//!
+//! Every message that comes has a bound, and one that cannot be understood is refused by name: a
+//! robot must not fall ill of what another one says.
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// A database of a thousand components has some 300 KB.
+pub const BYTES_MAXIMUM: usize = 1 << 20;
+
+/// A sign of life, several times within the limit of silence.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Beat {
+    /// Which of the robot's lives.
+    pub incarnation: u64,
+    /// The latest term that it knows.
+    pub term: u64,
+    /// Whether it is the one who decides.
+    pub decides: bool,
+}
+
+/// What a robot has: its component database, `DB_E-PBOs` of the ReFrESH paper.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Database {
+    /// Whose it is.
+    pub robot: String,
+    /// Architecture that its libraries are built for, as in `x86_64-linux`.
+    pub architecture: String,
+    /// Version of the contract between container and components.
+    pub abi: u32,
+    /// Its components.
+    pub components: Vec<ComponentEntry>,
+}
+
+/// One component of a robot.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ComponentEntry {
+    /// Name of the instance.
+    pub name: String,
+    /// Name of its library's component.
+    pub library: String,
+    /// SHA-256 of the library's file, in hexadecimal digits.
+    pub library_sha256: String,
+    /// Whether it runs.
+    pub runs: bool,
+    /// Outputs that other robots may listen to.
+    pub offers: Vec<OfferedPort>,
+}
+
+/// An output that other robots may listen to.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct OfferedPort {
+    /// Name of the port.
+    pub port: String,
+    /// Name of its data type.
+    pub data_type: String,
+}
+
+/// A fault that a robot's fault manager has confirmed, for all others.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FaultNotice {
+    /// The component that is to blame.
+    pub component: String,
+    /// What kind of fault.
+    pub kind: String,
+    /// When it was confirmed, in nanoseconds of the sender's clock.
+    pub t_ns: u64,
+}
+
+/// Asks for the estimate of a component that would take part in a task.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct EstimateRequest {
+    /// The task.
+    pub task: String,
+    /// The component.
+    pub component: String,
+}
+
+/// What a component would do for a task: `P_cf` and `P_cnf` of the paper.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// Functional performance, an error: 0 is best.
+    pub functional: f64,
+    /// Share of each resource that it would use, by name.
+    pub non_functional: Vec<(String, f64)>,
+}
+
+/// A message that is not understood.
+#[derive(Debug, Error)]
+pub enum BadMessage {
+    /// Too long.
+    #[error("it has {0} bytes, more than {BYTES_MAXIMUM}")]
+    TooLong(usize),
+    /// Not what was expected.
+    #[error("{0}")]
+    Content(#[from] serde_json::Error),
+    /// A number that no estimate may have.
+    #[error("the estimate of `{0}` is negative or no number")]
+    NoEstimate(String),
+}
+
+/// A message as bytes.
+///
+/// # Errors
+/// When it holds what JSON has no form for, or is too long.
+pub fn encode<Message: Serialize>(message: &Message) -> Result<Vec<u8>, BadMessage> {
+    let bytes = serde_json::to_vec(message)?;
+    bounded(&bytes)?;
+    Ok(bytes)
+}
+
+/// Bytes as a message.
+///
+/// # Errors
+/// When they are none of this kind.
+pub fn decode<Message: DeserializeOwned>(bytes: &[u8]) -> Result<Message, BadMessage> {
+    bounded(bytes)?;
+    Ok(serde_json::from_slice(bytes)?)
+}
+
+impl Estimate {
+    /// Whether one can reckon with it: an estimator of another robot may lie.
+    ///
+    /// # Errors
+    /// When a number is negative or not finite.
+    pub fn check(&self) -> Result<(), BadMessage> {
+        let resources = self.non_functional.iter();
+        let mut numbers = resources.map(|(name, share)| (name.as_str(), *share));
+        let functional = ("functional", self.functional);
+        let bad = |(_, number): &(&str, f64)| !(number.is_finite() && *number >= 0.0);
+        match std::iter::once(functional).chain(&mut numbers).find(bad) {
+            Some((name, _)) => Err(BadMessage::NoEstimate(name.to_owned())),
+            None => Ok(()),
+        }
+    }
+}
+
+fn bounded(bytes: &[u8]) -> Result<(), BadMessage> {
+    match bytes.len() > BYTES_MAXIMUM {
+        true => Err(BadMessage::TooLong(bytes.len())),
+        false => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_arrive_as_they_were_sent() {
+        let beat = Beat {
+            incarnation: 3,
+            term: 2,
+            decides: true,
+        };
+        let bytes = encode(&beat).expect("a message");
+        assert_eq!(bytes, br#"{"incarnation":3,"term":2,"decides":true}"#);
+        assert_eq!(decode::<Beat>(&bytes).expect("a beat"), beat);
+    }
+
+    #[test]
+    fn what_is_no_message_is_refused() {
+        let long = vec![b' '; BYTES_MAXIMUM + 1];
+        for (bytes, words) in [
+            (&b""[..], "EOF"),
+            (b"{\"incarnation\":3}", "missing field `term`"),
+            (
+                b"{\"incarnation\":-1,\"term\":2,\"decides\":true}",
+                "invalid value",
+            ),
+            (b"\xff\xfe", "expected value"),
+            (&long, "more than 1048576"),
+        ] {
+            let error = decode::<Beat>(bytes).expect_err(words).to_string();
+            assert!(error.contains(words), "{error} has no '{words}'");
+        }
+    }
+
+    #[test]
+    fn estimates_that_lie_are_found_out() {
+        let estimate = |functional, cpu| Estimate {
+            functional,
+            non_functional: vec![("cpu".to_owned(), cpu)],
+        };
+        assert!(estimate(0.0, 0.4).check().is_ok());
+        for (lie, name) in [
+            (estimate(f64::NAN, 0.4), "functional"),
+            (estimate(-0.1, 0.4), "functional"),
+            (estimate(0.1, f64::INFINITY), "cpu"),
+            (estimate(0.1, -1.0), "cpu"),
+        ] {
+            let error = lie.check().expect_err("a lie").to_string();
+            assert!(error.contains(name), "{error}");
+        }
+    }
+}
