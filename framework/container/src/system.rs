@@ -16,7 +16,7 @@ mod supervise;
 
 use std::ops::Range;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use robot_simulation::Simulation;
@@ -36,7 +36,7 @@ use crate::supervision::{ManagerThreads, Supervisor};
 use crate::world::World;
 
 pub use agenda::Failure;
-use agenda::LeftBehind;
+use agenda::{LeftBehind, nobody};
 pub use applications::Application;
 use applications::Applications;
 pub use options::{ClockKind, RunOptions, StateOptions};
@@ -133,9 +133,10 @@ impl System {
             .map(|it| recording::record(it, &applications, &assembly, &environment, &options));
         let recording = recording.transpose()?;
         let meter = Arc::new(real_time::meter(&assembly.statuses, &assembly.executors));
-        let adaptations = adaptation::adapt(&applications, &assembly, &environment, &meter)?;
-        let persistence = Persistence::new(&applications, &assembly.factories);
         let network = network::enter(ports, &environment)?;
+        let around = (&environment, &meter, network.as_ref());
+        let adaptations = adaptation::adapt(&applications, &assembly, around)?;
+        let persistence = Persistence::new(&applications, &assembly.factories);
         let system = Self {
             applications: applications.names(),
             specification: applications.specification,
@@ -143,11 +144,7 @@ impl System {
             environment,
             world,
             world_thread: None,
-            left_behind: assembly
-                .components
-                .iter()
-                .map(|_| AtomicBool::new(false))
-                .collect(),
+            left_behind: nobody(assembly.components.len()),
             components: assembly.components.into(),
             interfaces: assembly.interfaces.into(),
             statuses: assembly.statuses,
