@@ -44,6 +44,7 @@ mod supervised;
 mod tidy;
 mod trees;
 mod two_cameras;
+mod two_robots;
 mod visual_servoing;
 mod what_if;
 mod workbench;
