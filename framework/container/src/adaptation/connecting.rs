@@ -178,9 +178,9 @@ impl LocalRobot {
             },
             None => {
                 let output = self.binding.output(hop).map(|(key, _)| key.clone());
-                let passage = self.passage.as_mut();
-                let connection = passage.and_then(|passage| passage.close(hop));
-                if let (Some(output), Some(connection)) = (output, connection) {
+                if let (Some(output), Some(passage)) = (output, &mut self.passage)
+                    && let Some(connection) = passage.close(hop)
+                {
                     self.unplug(&output, connection, lane);
                 }
             }

@@ -50,6 +50,8 @@ pub struct Team {
     pub(super) mates: Teammates,
     /// What robots elsewhere have told of themselves last.
     pub(super) reports: Vec<Option<RobotReport>>,
+    /// Robots elsewhere that have been there: one that was never heard of is waited for, not lost.
+    met: Vec<bool>,
     /// Whose orders count.
     pub(super) fence: Fence,
     /// What this system's components are connected for.
@@ -71,6 +73,7 @@ impl Team {
         Self {
             mates: Teammates::default(),
             reports: own.binding.task.robots.iter().map(|_| None).collect(),
+            met: own.binding.task.robots.iter().map(|_| false).collect(),
             fence: Fence::default(),
             actual: running,
             open: Vec::new(),
@@ -224,6 +227,7 @@ impl Team {
         let was_new = old.is_some_and(|it| it.is_new);
         let is_new = report.is_new || was_new;
         self.reports[robot] = Some(RobotReport { is_new, ..report });
+        self.met[robot] = true;
     }
 
     /// The task with what robots have now, if that has changed.
@@ -241,7 +245,9 @@ impl Team {
                 continue;
             }
             let Some(report) = &self.reports[index] else {
-                robot.instances.clear();
+                if self.met[index] {
+                    robot.instances.clear();
+                }
                 continue;
             };
             let has = |component| report.components.contains(&component);

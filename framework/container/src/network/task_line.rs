@@ -92,7 +92,8 @@ impl TaskLine {
     }
 
     fn key(&self, hop: &Hop) -> (String, String) {
-        let name = format!("{}/{}/{}", self.task, hop.link, hop.from.component);
+        let (from, to) = (hop.from.component, hop.to.component);
+        let name = format!("{}/{}/{from}/{to}", self.task, hop.link);
         (self.robots[hop.from.robot].clone(), name)
     }
 
