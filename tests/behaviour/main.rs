@@ -25,6 +25,7 @@ mod live_orders;
 mod live_view;
 mod manager_ports;
 mod memory;
+mod migration;
 mod missions;
 mod new;
 mod persistence;

@@ -10,13 +10,13 @@ use serde_json::Value;
 use tests::{Application, Finished, Member, Watched, artifacts, repository, take_turn};
 
 /// A port that nobody listens at.
-fn free_port() -> u16 {
+pub(crate) fn free_port() -> u16 {
     let listener = TcpListener::bind(("127.0.0.1", 0)).expect("a free port");
     listener.local_addr().expect("its address").port()
 }
 
 /// `<network>` of a robot that listens at a port and knows others, with what is in it.
-fn network(name: &str, listen: u16, connect: &[u16], content: &str) -> String {
+pub(crate) fn network(name: &str, listen: u16, connect: &[u16], content: &str) -> String {
     let address = |port: &u16| format!("tcp/127.0.0.1:{port}");
     let others: Vec<String> = connect.iter().map(address).collect();
     format!(
@@ -164,7 +164,7 @@ fn what_cannot_be_entered_is_said_before_anything_starts() {
 }
 
 /// `steadfast package` with these arguments, in a folder.
-fn package(folder: &Path, arguments: &[&str]) -> Finished {
+pub(crate) fn package(folder: &Path, arguments: &[&str]) -> Finished {
     let mut command = Command::new(artifacts().join("steadfast"));
     command.current_dir(folder).arg("package").args(arguments);
     Watched::spawn(&mut command).wait(Duration::from_secs(60))

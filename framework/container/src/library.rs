@@ -11,7 +11,7 @@ pub(crate) use copy::{hand_over, sealed, whole};
 pub use description::{ComponentDescription, MethodDescription, PortDescription};
 pub use load::LoadedLibrary;
 pub use probe::{probe, probe_main};
-pub use search::LibrarySearch;
+pub use search::{LibrarySearch, file_name};
 
 use std::path::PathBuf;
 

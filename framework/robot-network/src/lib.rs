@@ -19,4 +19,4 @@ pub mod task;
 pub use fence::{Claim, Fence, Refused};
 pub use leadership::{Leadership, Role};
 pub use membership::{Change, Death, Membership};
-pub use node::{Answers, Heard, Inlet, Node, NodeError, OpenOptions, Outlet};
+pub use node::{Answers, Heard, Inlet, Node, NodeError, OpenOptions, Outlet, Visitor};

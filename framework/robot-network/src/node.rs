@@ -10,6 +10,7 @@ mod hearing;
 mod key;
 mod questions;
 mod tasks;
+mod visitor;
 
 use std::time::Duration;
 
@@ -27,6 +28,7 @@ pub use configuration::OpenOptions;
 pub use hearing::Heard;
 use hearing::{hear_beats, hear_faults, hear_tokens};
 pub use questions::Answers;
+pub use visitor::Visitor;
 
 /// Signs of life and faults that may wait for this robot: four seconds of a team of sixty that beats
 /// ten times a second with faults besides. The next beat says what a lost one has said.

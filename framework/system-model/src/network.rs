@@ -9,6 +9,11 @@ use crate::specification::PortReference;
 /// beats.
 pub const SILENCE_LIMIT: Duration = Duration::from_millis(500);
 
+/// How long a start waits for a component that another robot sends, unless a file says otherwise: a
+/// robot that was switched on at the same time has come up, and a large library has come over a slow
+/// radio link.
+pub const FETCH_LIMIT: Duration = Duration::from_secs(10);
+
 /// A robot's place in the network, from `<network>`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NetworkSpecification {

@@ -167,6 +167,21 @@ pub struct NetworkProfile {
     pub offers: Vec<ConnectionEnd>,
     /// Inputs that other robots feed.
     pub connections: Vec<RemoteConnection>,
+    /// Components that other robots send.
+    pub fetches: Vec<FetchProfile>,
+}
+
+/// `fetch`: a component that another robot sends if this one lacks it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FetchProfile {
+    /// The component, by the name of its package; its profile is `COMPONENT.xml`.
+    pub component: Located<String>,
+    /// The robot that has it.
+    pub robot: Located<String>,
+    /// File with the public keys that are trusted, as written.
+    pub key: Located<String>,
+    /// How long the start waits for it.
+    pub limit: Duration,
 }
 
 /// `remote_connection`: an input that another robot feeds.

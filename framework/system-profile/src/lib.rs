@@ -36,8 +36,8 @@ pub use readers::{
 };
 pub use reading::reading;
 pub use resolve::{
-    InjectionsOutcome, LoadOptions, LoadOutcome, RulesOutcome, load_application, load_injections,
-    load_rules, read_injection,
+    InjectionsOutcome, LoadOptions, LoadOutcome, RulesOutcome, find_component, load_application,
+    load_injections, load_rules, read_injection,
 };
 pub use schema::{SCHEMAS, Schema};
 pub use source::Source;

@@ -21,6 +21,8 @@ pub enum Severity {
     Error,
     /// The file can be used, but probably does not mean what its author thinks.
     Warning,
+    /// Nothing is wrong; there is something to know.
+    Note,
 }
 
 impl Severity {
@@ -29,6 +31,7 @@ impl Severity {
         match self {
             Self::Error => "error",
             Self::Warning => "warning",
+            Self::Note => "note",
         }
     }
 }
@@ -36,7 +39,7 @@ impl Severity {
 /// One problem at one place.
 #[derive(Debug, Clone)]
 pub struct Problem {
-    /// Error or warning.
+    /// Error, warning or note.
     pub severity: Severity,
     /// Where the offending text begins; line 0 where a whole file is meant.
     pub place: Place,
@@ -106,6 +109,7 @@ impl Diagnostic for Problem {
         Some(match self.severity {
             Severity::Error => miette::Severity::Error,
             Severity::Warning => miette::Severity::Warning,
+            Severity::Note => miette::Severity::Advice,
         })
     }
 
@@ -180,6 +184,8 @@ impl ProblemLog {
         let unlisted = match severity {
             Severity::Error => &self.unlisted_errors,
             Severity::Warning => &self.unlisted_warnings,
+            // A full list has more to say than that.
+            Severity::Note => return,
         };
         unlisted.set(unlisted.get() + 1);
     }

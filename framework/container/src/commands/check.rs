@@ -121,7 +121,11 @@ fn looks_like_xml(path: &Path) -> bool {
 }
 
 pub(super) fn exit_code(reports: &[FileReport], strict: bool) -> u8 {
-    let counts = |problem: &Problem| strict || problem.severity == Severity::Error;
+    let counts = |problem: &Problem| match problem.severity {
+        Severity::Error => true,
+        Severity::Warning => strict,
+        Severity::Note => false,
+    };
     if reports.iter().any(|report| !report.readable) {
         CANNOT_READ
     } else if reports
@@ -189,6 +193,10 @@ fn summary(reports: &[FileReport]) -> String {
         counted(count(Severity::Error), "error"),
         counted(count(Severity::Warning), "warning"),
     ];
+    match count(Severity::Note) {
+        0 => {}
+        notes => parts.push(counted(notes, "note")),
+    }
     if unreadable > 0 {
         parts.push(format!("{} could not be read", counted(unreadable, "file")));
     }

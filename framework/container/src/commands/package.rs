@@ -1,7 +1,7 @@
 //! `steadfast package`: components on their way from robot to robot, signed and checked.
 
-mod fetch;
-mod files;
+pub(super) mod fetch;
+pub(super) mod files;
 
 use std::io::{self, Write as _};
 use std::path::PathBuf;
@@ -111,7 +111,7 @@ pub fn run(arguments: &PackageArguments) -> ExitCode {
         } => files::seal(profile, key, output, library_path).map(|it| said("sealed", &it)),
         PackageCommand::Open { package, receiver } => {
             let bytes = files::read(package);
-            bytes.and_then(|bytes| receiver.take(&bytes))
+            bytes.and_then(|bytes| receiver.take(&bytes, None))
         }
         PackageCommand::Fetch {
             component,
@@ -120,7 +120,7 @@ pub fn run(arguments: &PackageArguments) -> ExitCode {
             receiver,
         } => {
             let bytes = fetch::fetch(component, from, connect);
-            bytes.and_then(|bytes| receiver.take(&bytes))
+            bytes.and_then(|bytes| receiver.take(&bytes, Some(component)))
         }
     };
     let (text, json) = match done {
@@ -140,8 +140,18 @@ pub fn run(arguments: &PackageArguments) -> ExitCode {
 }
 
 impl Receiver {
-    fn take(&self, bytes: &[u8]) -> Result<(String, serde_json::Value), Failed> {
-        files::open(bytes, &self.trust, &self.into).map(|manifest| said("unpacked", &manifest))
+    fn take(
+        &self,
+        bytes: &[u8],
+        component: Option<&str>,
+    ) -> Result<(String, serde_json::Value), Failed> {
+        let trusted = files::trusted_keys(&self.trust)?;
+        let package = files::checked(bytes, &trusted, component).map_err(|reason| Failed {
+            code: exit_code::REFUSED,
+            text: format!("the package is refused: {reason}"),
+        })?;
+        files::unpack(&package, &self.into)?;
+        Ok(said("unpacked", &package.manifest))
     }
 }
 

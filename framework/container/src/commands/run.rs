@@ -3,6 +3,7 @@
 pub(super) mod applications;
 pub(in crate::commands) mod duration;
 mod failure;
+mod fetching;
 mod libraries;
 mod live;
 mod models;
@@ -31,6 +32,7 @@ use system_profile::Problem;
 use super::{output, problems};
 use applications::Sources;
 pub(super) use failure::{Failed, exit_code, refused, unwritable};
+use fetching::Places;
 pub(super) use libraries::{libraries, library_folders};
 use live::Watcher;
 use observers::{ObserverArguments, listen};
@@ -120,12 +122,12 @@ enum Format {
 
 impl RunArguments {
     /// The files that say what is run.
-    fn sources(&self) -> Sources<'_> {
+    fn sources<'run>(&'run self, places: &'run Places) -> Sources<'run> {
         Sources {
             applications: &self.applications,
             rules: &self.rules,
             inject: &self.inject,
-            search_path: &self.search_path,
+            search_path: &places.search_path,
         }
     }
 }
@@ -148,7 +150,9 @@ pub fn run(arguments: &RunArguments) -> ExitCode {
 
 fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
     let supervised = supervised::join(arguments)?;
-    let applications = applications::load(&arguments.sources())?;
+    let places = Places::gather(arguments)?;
+    let sources = arguments.sources(&places);
+    let applications = applications::load(&sources)?;
     let simulations = match supervised.as_ref().and_then(|it| it.world()) {
         Some(_elsewhere) => Vec::new(),
         None => worlds::simulate(&applications, arguments.seed)?,
@@ -165,7 +169,7 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         seed: arguments.seed,
         events: arguments.events.clone(),
         echo: Some(echo),
-        libraries: libraries(&arguments.library_path),
+        libraries: places.libraries(),
         state: StateOptions {
             folder: arguments.state_path.clone(),
             // A container that goes on where another has died goes on from what that has left.
@@ -174,7 +178,7 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         score: None,
         recording: arguments.observers.shown(arguments.recording.options()),
         supervised: supervised.clone(),
-        network: network::of(&arguments.sources(), arguments.clock)?,
+        network: network::of(&sources, arguments.clock)?,
     };
     let started = System::start(applications, simulations, options);
     let system = started.map_err(|error| refused(&error))?;

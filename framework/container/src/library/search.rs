@@ -58,6 +58,13 @@ impl LibrarySearch {
     }
 }
 
+/// The name of a file by which the library `name` is found; none if the name leads into a folder.
+pub fn file_name(name: &str) -> Option<String> {
+    let name = name.trim();
+    let is_plain = !name.is_empty() && !name.contains(['/', '\\', '\0']);
+    is_plain.then(|| candidates(name).into_iter().next())?
+}
+
 /// File names that `name` may stand for on this machine, the exact one first.
 fn candidates(name: &str) -> Vec<String> {
     let path = Path::new(name);

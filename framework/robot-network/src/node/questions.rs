@@ -8,7 +8,7 @@ use zenoh::query::{ConsolidationMode, Queryable};
 
 use super::{Node, NodeError, key, refused};
 use crate::message::{self, Database};
-use crate::package;
+use crate::package::BYTES_MAXIMUM;
 
 /// What a robot answers when it is asked, on threads of the network's. A robot that says nothing of
 /// packages has none to give.
@@ -29,11 +29,7 @@ impl Node {
     /// # Errors
     /// When the network does not take the question.
     pub fn databases(&self, limit: Duration) -> Result<Vec<Database>, NodeError> {
-        let answers = self.ask(&key::question("database", "*"), Vec::new(), limit)?;
-        let read = |bytes: Vec<u8>| message::decode(&bytes).ok();
-        let mut databases: Vec<Database> = answers.filter_map(read).collect();
-        databases.sort_by(|one, other| one.robot.cmp(&other.robot));
-        Ok(databases)
+        databases(&self.session, limit)
     }
 
     /// The package of a component of another robot, as it came: it is still to be opened.
@@ -46,55 +42,64 @@ impl Node {
         component: &str,
         limit: Duration,
     ) -> Result<Vec<u8>, NodeError> {
-        let key = key::question("package", robot);
-        let bytes = self.first_answer(&key, component.as_bytes().to_vec(), limit)?;
-        match bytes.len() > package::BYTES_MAXIMUM {
-            true => Err(NodeError::Answer {
-                what: key,
-                reason: format!("it has {} bytes", bytes.len()),
-            }),
-            false => Ok(bytes),
+        package(&self.session, (robot, component), limit)
+    }
+}
+
+pub(super) fn databases(
+    session: &zenoh::Session,
+    limit: Duration,
+) -> Result<Vec<Database>, NodeError> {
+    let answers = ask(session, &key::question("database", "*"), Vec::new(), limit)?;
+    let read = |bytes: Vec<u8>| message::decode(&bytes).ok();
+    let mut databases: Vec<Database> = answers.filter_map(read).collect();
+    databases.sort_by(|one, other| one.robot.cmp(&other.robot));
+    Ok(databases)
+}
+
+pub(super) fn package(
+    session: &zenoh::Session,
+    (robot, component): (&str, &str),
+    limit: Duration,
+) -> Result<Vec<u8>, NodeError> {
+    let key = key::question("package", robot);
+    let first = ask(session, &key, component.as_bytes().to_vec(), limit)?.next();
+    let bytes = first.ok_or_else(|| NodeError::NoAnswer {
+        what: key.clone(),
+        limit,
+    })?;
+    match bytes.len() > BYTES_MAXIMUM {
+        true => Err(NodeError::Answer {
+            what: key,
+            reason: format!("it has {} bytes", bytes.len()),
+        }),
+        false => Ok(bytes),
+    }
+}
+
+/// Answers as they come, until all have answered or `limit` has passed.
+fn ask(
+    session: &zenoh::Session,
+    key: &str,
+    question: Vec<u8>,
+    limit: Duration,
+) -> Result<impl Iterator<Item = Vec<u8>> + use<>, NodeError> {
+    let replies = session
+        .get(key)
+        .payload(question)
+        .consolidation(ConsolidationMode::None)
+        .timeout(limit)
+        .wait()
+        .map_err(refused(key))?;
+    let deadline = Instant::now() + limit;
+    let next = move || loop {
+        let left = deadline.saturating_duration_since(Instant::now());
+        let reply = replies.recv_timeout(left).ok()??;
+        if let Ok(sample) = reply.into_result() {
+            return Some(sample.payload().to_bytes().into_owned());
         }
-    }
-
-    fn first_answer(
-        &self,
-        key: &str,
-        question: Vec<u8>,
-        limit: Duration,
-    ) -> Result<Vec<u8>, NodeError> {
-        let first = self.ask(key, question, limit)?.next();
-        first.ok_or_else(|| NodeError::NoAnswer {
-            what: key.to_owned(),
-            limit,
-        })
-    }
-
-    /// Answers as they come, until all have answered or `limit` has passed.
-    fn ask(
-        &self,
-        key: &str,
-        question: Vec<u8>,
-        limit: Duration,
-    ) -> Result<impl Iterator<Item = Vec<u8>> + use<>, NodeError> {
-        let replies = self
-            .session
-            .get(key)
-            .payload(question)
-            .consolidation(ConsolidationMode::None)
-            .timeout(limit)
-            .wait()
-            .map_err(refused(key))?;
-        let deadline = Instant::now() + limit;
-        let next = move || loop {
-            let left = deadline.saturating_duration_since(Instant::now());
-            let reply = replies.recv_timeout(left).ok()??;
-            if let Ok(sample) = reply.into_result() {
-                return Some(sample.payload().to_bytes().into_owned());
-            }
-        };
-        Ok(std::iter::from_fn(next))
-    }
+    };
+    Ok(std::iter::from_fn(next))
 }
 
 /// Answers whoever asks, as long as what is returned lives.

@@ -1,5 +1,7 @@
 //! `network`: how a robot enters the network, and which ports lead into it.
 
+mod fetches;
+
 use system_model::network::SILENCE_LIMIT;
 use system_model::profile::{Located, NetworkProfile, RemoteConnection};
 
@@ -18,7 +20,7 @@ const ADDRESSES_MAXIMUM: usize = 64;
 pub(super) fn read(root: &Node<'_>) -> Option<NetworkProfile> {
     let node = root.child("network")?;
     let robot = node.required_attribute("name");
-    let robot = robot.and_then(|value| name(&value));
+    let robot = robot.and_then(|value| name(&value, "robot"));
     let listen = addresses(&node, "listen");
     let connect = addresses(&node, "connect");
     let scouting = node.attribute("scouting");
@@ -30,6 +32,7 @@ pub(super) fn read(root: &Node<'_>) -> Option<NetworkProfile> {
     let offers = node.children("offer").iter().map(end).collect();
     let connections = node.children("remote_connection");
     let connections = connections.iter().filter_map(connection).collect();
+    let fetches = fetches::read(&node, robot.as_ref());
     if listen.is_empty() && connect.is_empty() && !scouting {
         node.error(
             "<network> leads nowhere",
@@ -50,6 +53,7 @@ pub(super) fn read(root: &Node<'_>) -> Option<NetworkProfile> {
         packages: packages.map(|value| value.as_str().to_owned()),
         offers,
         connections,
+        fetches,
     })
 }
 
@@ -59,7 +63,7 @@ fn connection(node: &Node<'_>) -> Option<RemoteConnection> {
     let (source, target) = (source?, target?);
     let robot = source
         .required_attribute("robot")
-        .and_then(|value| name(&value));
+        .and_then(|value| name(&value, "robot"));
     let (source, target) = (end(&source), end(&target));
     for part in [&source.component, &source.port] {
         let has_a_meaning = |sign: char| "*$?#".contains(sign);
@@ -80,15 +84,15 @@ fn connection(node: &Node<'_>) -> Option<RemoteConnection> {
     })
 }
 
-/// A robot's name goes into keys of the network.
-fn name(value: &Value<'_>) -> Option<Located<String>> {
+/// Names of robots and of packages go into keys of the network.
+fn name(value: &Value<'_>, whose: &str) -> Option<Located<String>> {
     let is_letter = |byte: u8| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'-');
     let text = value.as_str();
     if !text.is_empty() && text.len() <= NAME_MAXIMUM && text.bytes().all(is_letter) {
         return Some(value.located());
     }
     value.error(
-        format!("{} is no name of a robot", quoted(text)),
+        format!("{} is no name of a {whose}", quoted(text)),
         Some("write up to 64 letters, digits, `_` and `-`".into()),
     );
     None

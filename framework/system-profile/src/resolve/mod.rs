@@ -18,7 +18,7 @@ use std::rc::Rc;
 
 use behavior_tree::Plan;
 use system_model::network::NetworkSpecification;
-use system_model::profile::{ApplicationProfile, CompositeProfile, Profile};
+use system_model::profile::{ApplicationProfile, CompositeProfile, FetchProfile, Profile};
 use system_model::specification::{
     ApplicationSpecification, ComponentSpecification, ManagerConnection,
 };
@@ -31,6 +31,7 @@ use coordination::Edge;
 pub(crate) use files::{Files, LoadedFile};
 pub use injections::{InjectionsOutcome, load_injections, read_injection};
 pub(crate) use references::Sibling;
+pub use references::find_component;
 use rules::Site;
 pub use rules::{RulesOutcome, load_rules};
 
@@ -110,6 +111,8 @@ pub(crate) struct Assembly<'o> {
     open_composites: Vec<PathBuf>,
     instances: usize,
     dangling: bool,
+    /// Components that other robots send.
+    fetches: Vec<FetchProfile>,
     network: Option<NetworkSpecification>,
     /// Where each of the components comes from, in the same order.
     sites: Vec<Site>,
@@ -132,6 +135,7 @@ impl<'o> Assembly<'o> {
             open_composites: Vec::new(),
             instances: 0,
             dangling: false,
+            fetches: Vec::new(),
             network: None,
             sites: Vec::new(),
             expanded: Vec::new(),
@@ -146,10 +150,11 @@ impl<'o> Assembly<'o> {
         file: &Rc<LoadedFile>,
         profile: &ApplicationProfile,
     ) -> Option<ApplicationSpecification> {
+        let network = profile.network.as_deref();
+        self.fetches = network.map_or_else(Vec::new, |network| network.fetches.clone());
         let scope = self.members(file, &profile.subcomponents, "", "");
         self.connect(&scope, &profile.connections);
         self.coordinate(&scope, &profile.coordination);
-        let network = profile.network.as_deref();
         let beside = profile.header.file.parent().unwrap_or(Path::new(""));
         self.network = network.map(|network| self.network(&scope, network, beside));
         let world = profile

@@ -66,34 +66,77 @@ impl Assembly<'_> {
             );
             return None;
         };
-        let folders = self.folders(file.document.path(), sibling);
-        let candidates = folders.iter().map(|folder| folder.join(&relative));
-        let found = candidates.into_iter().find(|path| path.is_file());
+        let folders = folders(file.document.path(), sibling, &self.options.search_paths);
+        let found = first_file(&relative, &folders);
         if found.is_none() {
             self.dangling = true;
-            file.document.report(
-                self.options.dangling,
-                reference,
-                format!("there is no file `{}`", quoted(&reference.value)),
-                Some(near_help(&relative, &folders)),
-            );
+            let missing = format!("there is no file `{}`", quoted(&reference.value));
+            let sender = match sibling {
+                Sibling::Components => self.sender(&relative),
+                _ => None,
+            };
+            let (severity, message, help) = match sender {
+                Some(robot) => (
+                    fetched_later(self.options.dangling),
+                    format!("{missing}; robot `{robot}` sends it"),
+                    "it is fetched before a run with --clock real".to_owned(),
+                ),
+                None => (
+                    self.options.dangling,
+                    missing,
+                    near_help(&relative, &folders),
+                ),
+            };
+            let document = &file.document;
+            document.report(severity, reference, message, Some(help));
         }
         found
     }
 
-    fn folders(&self, file: &Path, sibling: Sibling) -> Vec<PathBuf> {
-        let own = match file.parent() {
-            Some(parent) if parent != Path::new("") => parent.to_owned(),
-            _ => PathBuf::from("."),
-        };
-        let beside = match own.file_name() {
-            Some(_) => own.with_file_name(sibling.folder()),
-            None => own.join("..").join(sibling.folder()),
-        };
-        let mut folders = vec![own, beside];
-        folders.extend(self.options.search_paths.iter().cloned());
-        folders
+    /// The robot that sends the component with this profile.
+    fn sender(&self, profile: &Path) -> Option<&str> {
+        let name = profile.to_str()?.strip_suffix(".xml")?;
+        let mut fetches = self.fetches.iter();
+        let fetch = fetches.find(|fetch| fetch.component.value == name)?;
+        Some(&fetch.robot.value)
     }
+}
+
+/// What a reference is that only a fetch satisfies: no mistake, unless the file is needed now.
+fn fetched_later(dangling: Severity) -> Severity {
+    match dangling {
+        Severity::Error => Severity::Error,
+        Severity::Warning | Severity::Note => Severity::Note,
+    }
+}
+
+/// The file that a reference to a component means in an application: as a run finds it.
+pub fn find_component(
+    application: &Path,
+    reference: &str,
+    search_paths: &[PathBuf],
+) -> Option<PathBuf> {
+    let folders = folders(application, Sibling::Components, search_paths);
+    first_file(&inside(reference)?, &folders)
+}
+
+fn first_file(relative: &Path, folders: &[PathBuf]) -> Option<PathBuf> {
+    let mut candidates = folders.iter().map(|folder| folder.join(relative));
+    candidates.find(|path| path.is_file())
+}
+
+fn folders(file: &Path, sibling: Sibling, search_paths: &[PathBuf]) -> Vec<PathBuf> {
+    let own = match file.parent() {
+        Some(parent) if parent != Path::new("") => parent.to_owned(),
+        _ => PathBuf::from("."),
+    };
+    let beside = match own.file_name() {
+        Some(_) => own.with_file_name(sibling.folder()),
+        None => own.join("..").join(sibling.folder()),
+    };
+    let mut folders = vec![own, beside];
+    folders.extend_from_slice(search_paths);
+    folders
 }
 
 /// The reference as a path that stays inside whatever folder it is joined to. Profiles written on

@@ -5,7 +5,7 @@ use std::io::{Read as _, Write as _};
 use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::{Path, PathBuf};
 
-use container::library::LibrarySearch;
+use container::library::{LibrarySearch, file_name};
 use container::network::this_machine;
 use robot_network::package::{BYTES_MAXIMUM, Manifest, Package, SigningKey, TrustedKeys};
 use system_model::profile::Profile;
@@ -72,28 +72,57 @@ pub(super) fn seal(
     Ok(package.manifest)
 }
 
-/// Unpacks what is signed by a trusted key for this machine: `COMPONENT.so` and `COMPONENT.xml`.
-pub(super) fn open(bytes: &[u8], trust: &Path, into: &Path) -> Result<Manifest, Failed> {
-    let trusted = TrustedKeys::parse(&text(trust)?).map_err(|error| refused(trust, error))?;
-    let package = Package::open(bytes, &trusted, &this_machine()).map_err(|error| Failed {
-        code: exit_code::REFUSED,
-        text: format!("the package is refused: {error}"),
-    })?;
-    let name = &package.manifest.component;
+/// The keys that are trusted.
+pub(in crate::commands) fn trusted_keys(file: &Path) -> Result<TrustedKeys, Failed> {
+    TrustedKeys::parse(&text(file)?).map_err(|error| refused(file, error))
+}
+
+/// The package, if one of the keys has signed it for this machine; of a component if one is named.
+///
+/// # Errors
+/// Why it is refused.
+pub(in crate::commands) fn checked(
+    bytes: &[u8],
+    trusted: &TrustedKeys,
+    component: Option<&str>,
+) -> Result<Package, String> {
+    let package = Package::open(bytes, trusted, &this_machine());
+    let package = package.map_err(|error| error.to_string())?;
+    let name = package.manifest.component.as_str();
     let is_letter = |byte: u8| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'-');
     if name.is_empty() || !name.bytes().all(is_letter) {
-        return Err(Failed {
-            code: exit_code::REFUSED,
-            text: format!(
-                "the package is refused: '{name}' is no name for a file\n  help: give the component \
-                 a name of letters, digits, `_` and `-`"
-            ),
-        });
+        return Err(format!(
+            "'{name}' is no name for a file; give the component a name of letters, digits, `_` and `-`"
+        ));
     }
+    match component {
+        // A robot that is not trusted may send what was signed for another purpose.
+        Some(wanted) if wanted != name => Err(format!(
+            "it is the package of '{name}', not of '{wanted}'; name the file {name}.sfp"
+        )),
+        _ => Ok(package),
+    }
+}
+
+/// Unpacks it: `libCOMPONENT.so`, or what the profile calls the library, and `COMPONENT.xml`.
+pub(in crate::commands) fn unpack(package: &Package, into: &Path) -> Result<(), Failed> {
+    let name = &package.manifest.component;
+    let profile = Document::from_bytes(format!("{name}.xml"), &package.profile);
+    let library = match read_profile(&profile) {
+        Some(Profile::Component(component)) => component.environment.library_name,
+        _ => None,
+    };
+    let library = library.and_then(|library| file_name(&library.value));
+    let library = library.ok_or_else(|| Failed {
+        code: exit_code::REFUSED,
+        text: format!(
+            "the package of '{name}' is refused: its profile names no library, or one in a folder\n  \
+             help: write <library_name>lib{name}.so</library_name>, and seal it again"
+        ),
+    })?;
     std::fs::create_dir_all(into).map_err(|error| unwritable(Some(into), &error))?;
-    write(&into.join(format!("lib{name}.so")), &package.library)?;
-    write(&into.join(format!("{name}.xml")), &package.profile)?;
-    Ok(package.manifest)
+    write(&into.join(library), &package.library)?;
+    write(&into.join(format!("{name}.xml")), &package.profile)
 }
 
 /// A file that is not larger than any package.

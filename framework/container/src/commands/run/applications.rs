@@ -80,7 +80,8 @@ pub(in crate::commands) fn read(
     Ok((applications, reading.problems))
 }
 
-fn not_started(files: &[PathBuf], found: &[Problem]) -> Failed {
+/// Files that are not started, with what is wrong.
+pub(super) fn not_started(files: &[PathBuf], found: &[Problem]) -> Failed {
     let names: Vec<String> = files
         .iter()
         .map(|file| file.display().to_string())

@@ -12,7 +12,9 @@ use container::outer_supervision::{
 };
 use container::system::Application;
 
-use super::{ClockArgument, Failed, RunArguments, applications, duration, exit_code, worlds};
+use super::{
+    ClockArgument, Failed, Places, RunArguments, applications, duration, exit_code, worlds,
+};
 
 /// The option that makes a parent.
 const SUPERVISED: &str = "--supervised";
@@ -26,6 +28,9 @@ pub(super) struct SupervisionArguments {
     /// The process that supervises this one
     #[arg(long, hide = true, value_name = "PROCESS", group = "supervision")]
     pub(super) supervised_by: Option<i32>,
+    /// Folder of a component that another robot has sent to the parent
+    #[arg(long, hide = true, value_name = "FOLDER", requires = "supervised_by")]
+    pub(super) sent: Vec<PathBuf>,
     /// Give up when the container has been restarted so often within 60 s
     #[arg(long, value_name = "N", default_value_t = DEFAULT_RESTARTS, requires = "supervision")]
     restarts: u32,
@@ -35,6 +40,13 @@ pub(super) struct SupervisionArguments {
     /// Keep this watchdog device of the machine (/dev/watchdog) fed while the container lives
     #[arg(long, value_name = "DEVICE", requires = "supervision")]
     hardware_watchdog: Option<PathBuf>,
+}
+
+impl SupervisionArguments {
+    /// Whether another process supervises this one.
+    pub(super) fn has_parent(&self) -> bool {
+        self.supervised_by.is_some()
+    }
 }
 
 fn beat_limit(text: &str) -> Result<Duration, String> {
@@ -59,13 +71,14 @@ pub(super) fn run(arguments: &RunArguments) -> Result<u8, Failed> {
         });
     }
     // What is wrong with these is said here; warnings are for the container to say.
-    let (applications, _warnings) = applications::read(&arguments.sources())?;
+    let places = Places::gather(arguments)?;
+    let (applications, _warnings) = applications::read(&arguments.sources(&places))?;
     let world = only_world(&applications)?;
     let executable = std::env::current_exe().map_err(SuperviseError::from);
     let options = &arguments.supervision;
     let plan = executable.map(|executable| Plan {
         executable,
-        arguments: container_arguments(std::env::args_os()),
+        arguments: container_arguments(std::env::args_os(), &places.sent),
         world: world.map(|file| PlannedWorld {
             file,
             seed: arguments.seed,
@@ -116,12 +129,18 @@ pub(super) fn join(arguments: &RunArguments) -> Result<Option<Arc<Supervised>>, 
     Ok(joined.map(Arc::new))
 }
 
-/// What the container is called with: the same, but it supervises nothing.
-fn container_arguments(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
+/// What the container is called with: the same, but it supervises nothing, and need not fetch what
+/// other robots have `sent`, also when it is restarted and they have gone.
+fn container_arguments(
+    arguments: impl Iterator<Item = OsString>,
+    sent: &[PathBuf],
+) -> Vec<OsString> {
     let without_program = arguments.skip(1);
-    without_program
-        .filter(|argument| argument != SUPERVISED)
-        .collect()
+    let kept = without_program.filter(|argument| argument != SUPERVISED);
+    let sent = sent
+        .iter()
+        .flat_map(|folder| [OsString::from("--sent"), folder.into()]);
+    kept.chain(sent).collect()
 }
 
 fn safe_states(applications: &[Application]) -> Vec<system_model::rules::SafeStateRule> {
@@ -139,8 +158,12 @@ mod tests {
     #[test]
     fn the_container_is_called_with_the_same() {
         let given = ["steadfast", "run", "a.xml", "--supervised", "--seed", "7"];
-        let arguments = container_arguments(given.iter().map(OsString::from));
+        let arguments = container_arguments(given.iter().map(OsString::from), &[]);
         assert_eq!(arguments, ["run", "a.xml", "--seed", "7"]);
+        let sent = [PathBuf::from("/sent")];
+        let arguments = container_arguments(given[..3].iter().map(OsString::from), &sent);
+        let expected = ["run", "a.xml", "--sent", "/sent"];
+        assert_eq!(arguments, expected);
     }
 
     #[test]
