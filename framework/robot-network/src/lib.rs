@@ -7,6 +7,7 @@
 
 #![forbid(unsafe_code)]
 
+mod credentials;
 mod fence;
 pub mod frame;
 mod leadership;
@@ -15,6 +16,7 @@ pub mod message;
 mod node;
 pub mod package;
 
+pub use credentials::{BadCredentials, Credentials};
 pub use fence::{Claim, Fence, Refused};
 pub use leadership::{Leadership, Role};
 pub use membership::{Change, Death, Membership};

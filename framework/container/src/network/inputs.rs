@@ -114,12 +114,12 @@ impl Listening {
     /// unless the input obeys another robot.
     pub(super) fn died(&self, robot: &str) {
         for source in self.sources.iter().filter(|source| source.robot == robot) {
-            let entry = source
+            let mut entry = source
                 .gate
                 .entry
                 .lock()
                 .unwrap_or_else(PoisonError::into_inner);
-            if entry.fence.obeys(robot) {
+            if entry.fence.died(robot) {
                 // Nothing can come between: whoever sends holds the lock.
                 source.gate.newest.store(ANCIENT_NS, Ordering::Relaxed);
             }
