@@ -84,13 +84,13 @@ enum PackageCommand {
 #[derive(Debug, Args)]
 struct CredentialFiles {
     /// File with a certificate that the robots' authority has signed, for an address like tls/192.168.0.2:7447
-    #[arg(long, value_name = "FILE", requires_all = ["private_key", "authority"])]
+    #[arg(long, required = false, value_name = "FILE", requires_all = ["private_key", "authority"])]
     certificate: PathBuf,
     /// File with the certificate's private key
-    #[arg(long, value_name = "FILE", requires_all = ["certificate", "authority"])]
+    #[arg(long, required = false, value_name = "FILE", requires_all = ["certificate", "authority"])]
     private_key: PathBuf,
     /// File with the authority's certificate
-    #[arg(long, value_name = "FILE", requires_all = ["certificate", "private_key"])]
+    #[arg(long, required = false, value_name = "FILE", requires_all = ["certificate", "private_key"])]
     authority: PathBuf,
 }
 
