@@ -17,7 +17,7 @@ const CAMERA_PERIOD_NS: u64 = 100_000_000;
 /// The error at which the task as it runs is not good enough: P_F does not exceed 0.2 where
 /// 1 - error / 50 does not exceed 0.2 / (0.95 * 0.9), what camera and PID leave.
 const MOST_ERROR: f64 = 38.3;
-const ROBOTS: [&str; 2] = ["visual_servoing_r1", "visual_servoing_r2"];
+pub(crate) const ROBOTS: [&str; 2] = ["visual_servoing_r1", "visual_servoing_r2"];
 
 /// The twelve candidates in the paper's order: for each, who has camera, dehazer if there is one,
 /// the components between it and the motor, and the motor.
@@ -131,7 +131,7 @@ fn in_smoke_the_task_goes_on_with_the_dehazer_of_the_other_robot() {
 }
 
 /// Where the shipped files of a test find what they refer to.
-fn search_paths() -> Vec<String> {
+pub(crate) fn search_paths() -> Vec<String> {
     let folders = ["profiles/components", "profiles/worlds"];
     let paths = folders.map(|folder| {
         let path = repository().join(folder).display().to_string();
