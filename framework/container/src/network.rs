@@ -202,6 +202,7 @@ impl NetworkPorts {
                 connect: specification.connect,
                 scouting: specification.scouting,
                 silence_limit: specification.silence_limit,
+                security: specification.security,
             },
             self.holdings,
         )?;

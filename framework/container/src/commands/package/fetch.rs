@@ -3,7 +3,8 @@
 use std::time::{Duration, Instant};
 
 use robot_network::message::Database;
-use robot_network::{Answers, Node, NodeError, OpenOptions};
+use robot_network::{Answers, Credentials, Node, NodeError, OpenOptions};
+use system_model::network::NetworkSecurity;
 
 use crate::commands::exit_code;
 use crate::commands::run::Failed;
@@ -32,8 +33,22 @@ impl Answers for Visitor {
 }
 
 /// Asks a robot for the package of a component.
-pub(super) fn fetch(component: &str, robot: &str, address: &str) -> Result<Vec<u8>, Failed> {
-    let visitor = format!("visitor_{}", std::process::id());
+pub(super) fn fetch(
+    component: &str,
+    robot: &str,
+    address: &str,
+    security: Option<NetworkSecurity>,
+) -> Result<Vec<u8>, Failed> {
+    let visitor = match &security {
+        Some(security) => {
+            let credentials = Credentials::read(security).map_err(NodeError::Credentials);
+            credentials
+                .map_err(|error| failed(&error))?
+                .name()
+                .to_owned()
+        }
+        None => format!("visitor_{}", std::process::id()),
+    };
     let node = Node::open(
         &OpenOptions {
             robot: visitor,
@@ -42,6 +57,7 @@ pub(super) fn fetch(component: &str, robot: &str, address: &str) -> Result<Vec<u
             connect: vec![address.to_owned()],
             scouting: false,
             silence_limit: CONNECTION_LIMIT,
+            security,
         },
         Visitor,
     );
@@ -56,7 +72,8 @@ pub(super) fn fetch(component: &str, robot: &str, address: &str) -> Result<Vec<u
             return Err(Failed {
                 code: exit_code::FILE,
                 text: format!(
-                    "no robot '{robot}' answers at {address}\n  help: does it run, and listen there?"
+                    "no robot '{robot}' answers at {address}\n  help: does it run, listen there, \
+                     and, if its connections are secured, allow the name in the certificate?"
                 ),
             });
         }
