@@ -44,6 +44,8 @@ mod supervised;
 mod tidy;
 mod trees;
 mod two_cameras;
+mod two_robots;
+mod two_robots_deaths;
 mod visual_servoing;
 mod what_if;
 mod workbench;

@@ -1,6 +1,8 @@
 //! Several applications in one container: told apart by name, each with its own rules.
 
-use tests::{Application, Member};
+use tests::{Application, Member, repository};
+
+use crate::visual_servoing::tracked_on;
 
 /// An application of a counter and a recorder, under a name of its own.
 fn named(name: &str, rest: &str) -> Application {
@@ -116,14 +118,80 @@ fn what_cannot_be_in_one_container_is_refused() {
     let one = named("one", "");
     let outcome = one.run_together(&[file_of(&one), file_of(&one)], &SIMULATED);
     outcome.was_refused(1, &["called `one`, too"]);
-    let world = tests::repository().join("profiles/worlds/target_arena.xml");
-    let world = std::fs::read(world).expect("it can be read");
-    let in_a_world = |name: &str| {
-        let application = named(name, "<world><reference>arena.xml</reference></world>");
-        application.write("arena.xml", &world);
-        application
-    };
     let (one, other) = (in_a_world("one"), in_a_world("other"));
-    let outcome = one.run_together(&[file_of(&one), file_of(&other)], &SIMULATED);
-    outcome.was_refused(1, &["'one' drives in", "'other' in"]);
+    let supervised = ["--supervised", "--clock", "real", "--for", "1s"];
+    let outcome = one.run_together(&[file_of(&one), file_of(&other)], &supervised);
+    outcome.was_refused(1, &["keeps one world alive"]);
+}
+
+/// A robot in a world of its own that drives towards its target, and counts.
+fn in_a_world(name: &str) -> Application {
+    let root = repository();
+    let application = named(name, "<world><reference>arena.xml</reference></world>");
+    let world = std::fs::read(root.join("profiles/worlds/target_arena.xml")).expect("a world");
+    application.write("arena.xml", world);
+    application
+}
+
+/// Each application opens devices in its own world, or in the one that it shares; each world has
+/// arenas of its own, and goes the same way in each run.
+#[test]
+fn applications_drive_in_worlds_of_their_own() {
+    let shipped = |name: &str| {
+        let file = repository().join("profiles/applications").join(name);
+        std::fs::read_to_string(file).expect("a shipped application")
+    };
+    let run = Application::new();
+    let folder = repository().join("profiles");
+    let world = std::fs::read_to_string(folder.join("worlds/servoing_arena.xml")).expect("a world");
+    run.write("near.xml", world);
+    let robot = |name: &str, world: &str| {
+        let text = shipped("visual_servoing.xml");
+        let text = text.replace(
+            "<name>visual_servoing</name>",
+            &format!("<name>{name}</name>"),
+        );
+        run.write(
+            &format!("{name}.xml"),
+            text.replace("servoing_arena.xml", world),
+        )
+    };
+    let files = [robot("one", "servoing_arena.xml"), robot("two", "near.xml")];
+    let search = |folder: &str| repository().join(folder).display().to_string();
+    let (components, worlds) = (search("profiles/components"), search("profiles/worlds"));
+    let picture = run.folder().join("drive.svg").display().to_string();
+    let smoke = run.write(
+        "smoke.xml",
+        "<fault_injections application='two'>
+           <inject at='500ms' fault='camera_smoke' density='1'/>
+         </fault_injections>",
+    );
+    let smoke = smoke.display().to_string();
+    let file = run.folder().join("run.mcap");
+    let recording = file.display().to_string();
+    let arguments = [
+        &SIMULATED[..],
+        &["--search-path", &components, "--search-path", &worlds],
+        &["--picture", &picture, "--inject", &smoke],
+        &["--record", &recording],
+    ]
+    .concat();
+    let drive = || run.run_together(&files, &arguments).ended_well();
+    let outcome = drive();
+    let summary = outcome.summary();
+    let robots = &summary["robots"];
+    assert_eq!(summary["robot"], robots["one"], "{summary:#}");
+    assert_ne!(robots["one"], robots["two"], "{summary:#}");
+    let pictures = ["drive.svg", "drive-two.svg"].map(|name| {
+        let file = run.folder().join(name);
+        std::fs::read_to_string(file).expect("a picture of each drive")
+    });
+    assert_ne!(pictures[0], pictures[1]);
+    for (name, in_smoke) in [("one", false), ("two", true)] {
+        let tracked = tracked_on(&file, &format!("/{name}/ssd_tracker/target"));
+        assert!(tracked.len() >= 9, "{name}: {}", tracked.len());
+        let last = tracked.last().expect("pictures are tracked");
+        assert_eq!(last.error > 40.0, in_smoke, "{name}: {}", last.error);
+    }
+    assert_eq!(drive().summary()["robots"], *robots);
 }

@@ -36,11 +36,16 @@ fn drive(application: &str, seed: u64) -> Vec<Tracked> {
 }
 
 pub(crate) fn tracked(file: &Path) -> Vec<Tracked> {
+    tracked_on(file, "/ssd_tracker/target")
+}
+
+/// What the tracker has written on this topic.
+pub(crate) fn tracked_on(file: &Path, topic: &str) -> Vec<Tracked> {
     let messages = read(file).expect("the recording can be opened");
     let messages = messages.map(|message| message.expect("the recording is whole"));
     let number = |value: &serde_json::Value| value.as_f64().expect("a number");
     messages
-        .filter(|message| message.topic() == "/ssd_tracker/target")
+        .filter(|message| message.topic() == topic)
         .map(|message| Tracked {
             time_ns: message.value["time"].as_u64().expect("a time"),
             error: number(&message.value["matching_error"]),
@@ -56,7 +61,7 @@ fn parted(tracked: &[Tracked]) -> (&[Tracked], &[Tracked]) {
     tracked.split_at(before)
 }
 
-fn keeps_the_target_in_the_middle(tracked: &[Tracked]) -> bool {
+pub(crate) fn keeps_the_target_in_the_middle(tracked: &[Tracked]) -> bool {
     tracked.iter().all(|it| (it.column - 80.0).abs() < 30.0)
 }
 
@@ -93,9 +98,9 @@ fn free_port() -> u16 {
 }
 
 /// The shipped files of two robots, with ports that are free.
-fn robots_at(run: &Application) -> [PathBuf; 2] {
+pub(crate) fn robots_at(run: &Application, names: [&str; 2]) -> [PathBuf; 2] {
     let ports = [free_port(), free_port()].map(|port| port.to_string());
-    ["visual_servoing_r1", "visual_servoing_r2"].map(|name| {
+    names.map(|name| {
         let file = format!("{name}.xml");
         let shipped = repository().join("profiles/applications").join(&file);
         let text = std::fs::read_to_string(shipped).expect("a shipped file");
@@ -111,7 +116,8 @@ fn robots_at(run: &Application) -> [PathBuf; 2] {
 fn another_robot_clears_the_pictures() {
     let _turn = take_turn();
     let (first, second) = (Application::new(), Application::new());
-    let files = robots_at(&first);
+    let names = ["visual_servoing_offered_r1", "visual_servoing_offered_r2"];
+    let files = robots_at(&first, names);
     let recording = first.folder().join("run.mcap");
     let search = |folder: &str| repository().join(folder).display().to_string();
     let (components, worlds) = (search("profiles/components"), search("profiles/worlds"));

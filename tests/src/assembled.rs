@@ -8,12 +8,12 @@ use container::adaptation::AdaptationRequests;
 use container::assembly::{Assembly, LibraryOptions, assemble};
 use container::clock::Clock;
 use container::component::Environment;
-use container::device::Devices;
 use container::event_log::{EventLog, EventWriter};
 use container::injection::Injections;
 use container::library::LibrarySearch;
 use container::schedule::BusyTime;
 use container::supervision::{Observations, Scenes};
+use container::world::Worlds;
 use system_model::rules::FaultRules;
 use system_profile::{LoadOptions, load_application};
 
@@ -26,11 +26,10 @@ pub fn environment() -> (Arc<Environment>, EventWriter) {
     let environment = Environment {
         clock: Clock::simulated(),
         events,
-        devices: Devices::default(),
         observations: Observations::default(),
         scenes: Scenes::default(),
         injections: Injections::default(),
-        world: None,
+        worlds: Worlds::default(),
         score: None,
         adaptation_requests: AdaptationRequests::default(),
         busy: BusyTime::default(),

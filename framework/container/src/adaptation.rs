@@ -4,27 +4,32 @@
 //! A task is attached to an application from outside ([`AttachedTask`]): components need not know.
 //! `binding` finds its names in the application; `local` listens to outputs, `evaluation` makes
 //! errors of what is heard, `estimation` lets fresh instances of what does not run work on current
-//! data, `change` goes from one way of doing the task to another. All of it is on a lane of its own
-//! where time is real, else on the one thread.
+//! data, `change` goes from one way of doing the task to another. `team` does all that together with
+//! other robots: one of them decides (`leading`), the others do what it asks for (`following`). All of
+//! it is on a lane of its own where time is real, else on the one thread.
 
 mod binding;
 mod change;
 mod connecting;
 mod estimation;
 mod evaluation;
+mod following;
 mod known;
 mod lane;
+mod leading;
 mod linking;
 mod local;
 mod losses;
 mod outlet;
 mod overruns;
-mod performer;
+mod passage;
 mod record;
+mod rehearsal;
 mod requests;
 mod settling;
 mod shadow;
 mod shell;
+mod team;
 mod wiring;
 
 use system_model::specification::Place;
@@ -34,10 +39,12 @@ pub use binding::Binding;
 pub use known::Known;
 pub use lane::AdaptationLane;
 pub use local::LocalRobot;
-pub use performer::Performer;
+pub use passage::{Passage, Teammates};
 pub use record::{AdaptationRecord, CandidateRecord, PhaseRecord};
 pub use requests::{AdaptationRequests, AdaptationSummary};
 pub use shell::Adaptation;
+pub use team::Team;
+pub use wiring::{Hop, description};
 
 /// A task, and where it is attached.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,7 +6,6 @@ use std::io::{self, IsTerminal as _};
 use std::os::fd::{AsRawFd as _, FromRawFd as _, IntoRawFd as _, OwnedFd};
 use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use nix::sys::termios::{self, BaudRate, SetArg};
 
@@ -14,12 +13,6 @@ use crate::world::World;
 
 /// Names of devices of the simulated world start with this.
 const SIMULATED: &str = "simulated:";
-
-/// Where devices come from.
-#[derive(Debug, Default)]
-pub struct Devices {
-    world: Option<Arc<World>>,
-}
 
 /// An open device that has not been given away yet.
 #[derive(Debug)]
@@ -59,35 +52,25 @@ pub enum DeviceError {
     },
 }
 
-impl Devices {
-    /// Devices of the machine, and of the world if there is one.
-    pub fn new(world: Option<Arc<World>>) -> Self {
-        Self { world }
-    }
-
-    /// Opens a device for a component.
-    ///
-    /// # Errors
-    /// If there is none of that name or it does not open.
-    pub fn open(&self, name: &str) -> Result<OpenDevice, DeviceError> {
-        let Some(simulated) = name.strip_prefix(SIMULATED) else {
-            return open_path(name).map_err(|error| DeviceError::Machine {
-                name: name.to_owned(),
-                error,
-            });
-        };
-        let world = self
-            .world
-            .as_ref()
-            .ok_or_else(|| DeviceError::NoWorld(name.to_owned()))?;
-        let opened = world.open(simulated);
-        opened
-            .map(|(descriptor, path)| OpenDevice { descriptor, path })
-            .map_err(|error| DeviceError::Simulated {
-                name: name.to_owned(),
-                error,
-            })
-    }
+/// Opens a device of the machine, or of the world that a component's application drives in.
+///
+/// # Errors
+/// If there is none of that name or it does not open.
+pub fn open(name: &str, world: Option<&World>) -> Result<OpenDevice, DeviceError> {
+    let Some(simulated) = name.strip_prefix(SIMULATED) else {
+        return open_path(name).map_err(|error| DeviceError::Machine {
+            name: name.to_owned(),
+            error,
+        });
+    };
+    let world = world.ok_or_else(|| DeviceError::NoWorld(name.to_owned()))?;
+    let opened = world.open(simulated);
+    opened
+        .map(|(descriptor, path)| OpenDevice { descriptor, path })
+        .map_err(|error| DeviceError::Simulated {
+            name: name.to_owned(),
+            error,
+        })
 }
 
 impl OpenDevice {

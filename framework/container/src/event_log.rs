@@ -162,6 +162,9 @@ pub enum Event {
     },
     /// The robot has reached its target.
     TargetReached {
+        /// Of several in worlds of their own: the first application in its world.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        application: Option<String>,
         /// Robot time in seconds.
         time_s: f64,
     },

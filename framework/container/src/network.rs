@@ -8,13 +8,15 @@
 //! are judged by their own rules.
 
 mod answers;
+mod gate;
 mod inputs;
 mod outputs;
+mod task_line;
 mod team;
 
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -23,7 +25,9 @@ use robot_network::package::Machine;
 use robot_network::{Node, NodeError, OpenOptions};
 use system_model::network::NetworkSpecification;
 use system_model::specification::{ApplicationSpecification, PortReference};
+use system_model::task::TaskSpecification;
 
+use crate::adaptation::Passage;
 use crate::assembly::Assembly;
 use crate::component::{Environment, PortEnd};
 use crate::event_log::{Event, EventLog};
@@ -32,8 +36,10 @@ use crate::library::PortDescription;
 use crate::system::StartError;
 use crate::wake::Wake;
 use answers::Holdings;
+pub use gate::Entrance;
 use inputs::RemoteInputs;
-use outputs::Outputs;
+use outputs::{Outputs, Ways};
+use task_line::{Gates, TaskLine};
 use team::Team;
 
 /// Verdicts that may wait to be told to other robots; what finds no room is on record here.
@@ -88,6 +94,7 @@ pub fn enter(
 
 /// The ports that lead into the network, connected, before anything of it is entered.
 pub struct NetworkPorts {
+    first: usize,
     specification: NetworkSpecification,
     verdicts: Channel<(u64, Event)>,
     outputs: Outputs,
@@ -100,6 +107,11 @@ pub struct Network {
     stopping: Arc<AtomicBool>,
     wake: Arc<Wake>,
     threads: Vec<JoinHandle<()>>,
+    /// First component of the application that is in it.
+    first: usize,
+    node: Arc<Node>,
+    shared: Arc<Shared>,
+    ways: Ways,
 }
 
 /// What the threads share.
@@ -110,6 +122,18 @@ struct Shared {
     term: AtomicU64,
     stopping: Arc<AtomicBool>,
     environment: Arc<Environment>,
+    gates: Gates,
+    team: Mutex<TeamView>,
+    /// What tells tasks of something new.
+    wakes: Mutex<Vec<Arc<Wake>>>,
+}
+
+/// Who is there and who decides.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+struct TeamView {
+    /// None until all have had time to be heard.
+    decider: Option<String>,
+    alive: Vec<String>,
 }
 
 impl NetworkPorts {
@@ -154,6 +178,7 @@ impl NetworkPorts {
             }
         }
         Self {
+            first,
             holdings: Holdings::new(&specification, application, assembly),
             specification,
             verdicts: place.verdicts,
@@ -187,13 +212,21 @@ impl NetworkPorts {
             term: AtomicU64::new(0),
             stopping: Arc::default(),
             environment: Arc::clone(environment),
+            gates: Gates::default(),
+            team: Mutex::default(),
+            wakes: Mutex::default(),
         });
+        let node = Arc::new(node);
         let sending = self.outputs.offer(&node, &shared)?;
         let inputs = self.inputs.listen(&node, &shared)?;
         let mut network = Network {
             stopping: Arc::clone(&shared.stopping),
             wake: sending.wake(),
             threads: Vec::new(),
+            first: self.first,
+            node: Arc::clone(&node),
+            shared: Arc::clone(&shared),
+            ways: sending.ways(),
         };
         let team = Team::new(
             node,
@@ -217,6 +250,20 @@ pub fn this_machine() -> Machine {
 }
 
 impl Network {
+    /// Name of this robot, and the first component of the application that is in the network.
+    pub fn robot(&self) -> (&str, usize) {
+        (&self.shared.robot, self.first)
+    }
+
+    /// The way to other robots for a task.
+    ///
+    /// # Errors
+    /// When the network does not take it.
+    pub fn passage(&self, task: &TaskSpecification) -> Result<Box<dyn Passage>, NodeError> {
+        let line = TaskLine::new(&self.node, &self.shared, self.ways.clone(), task)?;
+        Ok(Box::new(line))
+    }
+
     fn start(&mut self, name: &str, run: impl FnOnce() + Send + 'static) -> Result<(), NodeError> {
         let thread = std::thread::Builder::new().name(name.to_owned()).spawn(run);
         let thread = thread.map_err(|error| NodeError::Open {
@@ -239,6 +286,30 @@ impl Drop for Network {
 }
 
 impl Shared {
+    fn team(&self) -> MutexGuard<'_, TeamView> {
+        self.team.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What becomes awake when there is something new.
+    fn wake_of_tasks(&self) -> Arc<Wake> {
+        let wake = Arc::default();
+        let mut wakes = self.wakes.lock().unwrap_or_else(PoisonError::into_inner);
+        wakes.push(Arc::clone(&wake));
+        wake
+    }
+
+    /// Tells tasks who is there and who decides.
+    fn set_team(&self, view: TeamView) {
+        let mut team = self.team();
+        if *team == view {
+            return;
+        }
+        *team = view;
+        drop(team);
+        let wakes = self.wakes.lock().unwrap_or_else(PoisonError::into_inner);
+        wakes.iter().for_each(|wake| wake.wake());
+    }
+
     fn now(&self) -> Duration {
         self.environment.clock.now()
     }

@@ -20,9 +20,12 @@ pub struct Summary {
     pub components: BTreeMap<String, ComponentSummary>,
     /// How often the container was restarted by the parent that supervises it.
     pub restarts: u32,
-    /// The robot of the simulated world, if there is one.
+    /// The robot of the simulated world, if there is one; of several, that of the first.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub robot: Option<RobotSummary>,
+    /// Where there are several worlds, the robot of each, by the first application that drives in it.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub robots: BTreeMap<String, RobotSummary>,
     /// What self-adaptation has come to, if a task was watched over.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub adaptation: Option<AdaptationSummary>,

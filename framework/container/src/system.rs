@@ -16,7 +16,7 @@ mod supervise;
 
 use std::ops::Range;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use robot_simulation::Simulation;
@@ -33,10 +33,9 @@ use crate::recording::RecordingThread;
 use crate::status::{ComponentStatus, Meter};
 use crate::summary::Summary;
 use crate::supervision::{ManagerThreads, Supervisor};
-use crate::world::World;
 
 pub use agenda::Failure;
-use agenda::LeftBehind;
+use agenda::{LeftBehind, nobody};
 pub use applications::Application;
 use applications::Applications;
 pub use options::{ClockKind, RunOptions, StateOptions};
@@ -60,7 +59,6 @@ pub struct System {
     applications: Vec<(String, Range<usize>)>,
     options: RunOptions,
     environment: Arc<Environment>,
-    world: Option<Arc<World>>,
     world_thread: Option<WorldThread>,
     components: Arc<[Arc<ComponentCell>]>,
     interfaces: Arc<[Vec<PortDescription>]>,
@@ -87,26 +85,23 @@ pub struct System {
 
 impl System {
     /// Assembles applications and brings them up; when this returns they run. Their names differ,
-    /// and they drive in one world at most. Where there are several, their components are called
-    /// `application/component`.
+    /// and `simulations` has the worlds of their [`world_files`](crate::world::world_files). Where there
+    /// are several applications, their components are called `application/component`.
     ///
     /// # Errors
     /// If anything is wrong; then nothing of them runs.
     pub fn start(
         applications: Vec<Application>,
-        simulation: Option<Simulation>,
+        simulations: Vec<Simulation>,
         mut options: RunOptions,
     ) -> Result<Self, StartError> {
         let began = Instant::now();
-        let real = options.clock == ClockKind::Real;
-        let supervised = options.supervised.clone();
-        let outside = supervised.as_ref().and_then(|it| it.world().cloned());
-        let world = outside.or_else(|| simulation.map(|it| Arc::new(World::new(it, real))));
+        let applications = Applications::new(applications);
+        let worlds = options.worlds(&applications.drives(), simulations);
         let (mut recorder, recorded) = options.recorder();
         let (events, writer) = options.open_events(recorded)?;
         let (events, network) = network::hear(events, options.network.take());
-        let environment = options.environment(events, world.clone());
-        let applications = Applications::new(applications);
+        let environment = options.environment(events, worlds);
         let specification = &applications.specification;
         let assembly = assemble_together(
             specification,
@@ -133,21 +128,17 @@ impl System {
             .map(|it| recording::record(it, &applications, &assembly, &environment, &options));
         let recording = recording.transpose()?;
         let meter = Arc::new(real_time::meter(&assembly.statuses, &assembly.executors));
-        let adaptations = adaptation::adapt(&applications, &assembly, &environment, &meter)?;
-        let persistence = Persistence::new(&applications, &assembly.factories);
         let network = network::enter(ports, &environment)?;
+        let around = (&environment, &meter, network.as_ref());
+        let adaptations = adaptation::adapt(&applications, &assembly, around)?;
+        let persistence = Persistence::new(&applications, &assembly.factories);
         let system = Self {
             applications: applications.names(),
             specification: applications.specification,
             options,
             environment,
-            world,
             world_thread: None,
-            left_behind: assembly
-                .components
-                .iter()
-                .map(|_| AtomicBool::new(false))
-                .collect(),
+            left_behind: nobody(assembly.components.len()),
             components: assembly.components.into(),
             interfaces: assembly.interfaces.into(),
             statuses: assembly.statuses,

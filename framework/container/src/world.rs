@@ -1,9 +1,10 @@
 //! The simulated world as the container hosts it: moved by the schedule, opened by components. The
-//! world of a supervised container is another process, which outlives it.
+//! world of a supervised container is another process, which outlives it. A run may have several.
 
 mod process;
 mod protocol;
 mod remote;
+mod worlds;
 
 use std::fmt;
 use std::io;
@@ -15,11 +16,11 @@ use std::time::Duration;
 
 use robot_simulation::{Fault, RobotSummary, Simulation, Transport, draw_drive};
 
-use crate::component::Environment;
-use crate::event_log::Event;
+use crate::clock::nanoseconds;
 
 pub use process::{STANDS, serve};
 pub use remote::RemoteWorld;
+pub use worlds::{Drives, Worlds, world_files, world_seed};
 
 /// A simulated world.
 pub struct World {
@@ -64,8 +65,9 @@ impl World {
         }
     }
 
-    /// Moves the world to `now`, if it is not elsewhere; true once the robot has reached its target.
-    pub fn advance_to(&self, now: Duration, environment: &Environment) -> bool {
+    /// Moves the world to `now`, if it is not elsewhere. When the robot has just reached its target:
+    /// the world's time in nanoseconds, and the drive's in seconds.
+    pub fn advance_to(&self, now: Duration) -> Option<(u64, f64)> {
         let (summary, time) = match &self.place {
             Place::Here { simulation, .. } => {
                 let mut simulation = lock(simulation);
@@ -74,17 +76,8 @@ impl World {
             }
             Place::Elsewhere(world) => (world.summary(), now),
         };
-        if summary.reached && !self.reached.swap(true, Ordering::AcqRel) {
-            let time_ns = u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
-            environment.clock.advance_to(time_ns);
-            environment.events.record(
-                time_ns,
-                Event::TargetReached {
-                    time_s: summary.time_s.unwrap_or_default(),
-                },
-            );
-        }
-        self.has_reached_target()
+        let just_reached = summary.reached && !self.reached.swap(true, Ordering::AcqRel);
+        just_reached.then(|| (nanoseconds(time), summary.time_s.unwrap_or_default()))
     }
 
     /// Whether the robot has reached its target.

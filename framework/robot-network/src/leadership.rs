@@ -79,14 +79,14 @@ impl Leadership {
         }
     }
 
-    /// Whether this robot decides.
-    pub fn decides(&self) -> bool {
-        self.decider.as_deref() == Some(&self.own)
-    }
-
     /// Who decides; none before the first look.
     pub fn decider(&self) -> Option<&str> {
         self.decider.as_deref()
+    }
+
+    /// Whether this robot decides.
+    pub fn decides(&self) -> bool {
+        self.decider.as_deref() == Some(&self.own)
     }
 
     /// The latest term that this robot knows.

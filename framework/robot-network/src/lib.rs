@@ -1,7 +1,7 @@
 //! Robots among robots.
 //!
 //! Pure, and told the time: [`Membership`] knows who is alive, [`Leadership`] who decides,
-//! [`Fence`] whose data an actuator obeys, [`message`] and [`frame`] what is said, [`package`] what
+//! [`Fence`] whose data an actuator obeys, [`message`], [`task`] and [`frame`] what is said, [`package`] what
 //! a robot takes from another one and runs. Around that [`Node`] is a thin shell over zenoh, which
 //! finds the others and carries everything; nothing else here knows of it.
 
@@ -15,6 +15,7 @@ mod membership;
 pub mod message;
 mod node;
 pub mod package;
+pub mod task;
 
 pub use credentials::{BadCredentials, Credentials};
 pub use fence::{Claim, Fence, Refused};

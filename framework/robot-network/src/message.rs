@@ -69,24 +69,6 @@ pub struct FaultNotice {
     pub t_ns: u64,
 }
 
-/// Asks for the estimate of a component that would take part in a task.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct EstimateRequest {
-    /// The task.
-    pub task: String,
-    /// The component.
-    pub component: String,
-}
-
-/// What a component would do for a task: `P_cf` and `P_cnf` of the paper.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Estimate {
-    /// Functional performance, an error: 0 is best.
-    pub functional: f64,
-    /// Share of each resource that it would use, by name.
-    pub non_functional: Vec<(String, f64)>,
-}
-
 /// A message that is not understood.
 #[derive(Debug, Error)]
 pub enum BadMessage {
@@ -96,9 +78,6 @@ pub enum BadMessage {
     /// Not what was expected.
     #[error("{0}")]
     Content(#[from] serde_json::Error),
-    /// A number that no estimate may have.
-    #[error("the estimate of `{0}` is negative or no number")]
-    NoEstimate(String),
 }
 
 /// A message as bytes.
@@ -118,23 +97,6 @@ pub fn encode<Message: Serialize>(message: &Message) -> Result<Vec<u8>, BadMessa
 pub fn decode<Message: DeserializeOwned>(bytes: &[u8]) -> Result<Message, BadMessage> {
     bounded(bytes)?;
     Ok(serde_json::from_slice(bytes)?)
-}
-
-impl Estimate {
-    /// Whether one can reckon with it: an estimator of another robot may lie.
-    ///
-    /// # Errors
-    /// When a number is negative or not finite.
-    pub fn check(&self) -> Result<(), BadMessage> {
-        let resources = self.non_functional.iter();
-        let mut numbers = resources.map(|(name, share)| (name.as_str(), *share));
-        let functional = ("functional", self.functional);
-        let bad = |(_, number): &(&str, f64)| !(number.is_finite() && *number >= 0.0);
-        match std::iter::once(functional).chain(&mut numbers).find(bad) {
-            Some((name, _)) => Err(BadMessage::NoEstimate(name.to_owned())),
-            None => Ok(()),
-        }
-    }
 }
 
 fn bounded(bytes: &[u8]) -> Result<(), BadMessage> {
@@ -175,24 +137,6 @@ mod tests {
         ] {
             let error = decode::<Beat>(bytes).expect_err(words).to_string();
             assert!(error.contains(words), "{error} has no '{words}'");
-        }
-    }
-
-    #[test]
-    fn estimates_that_lie_are_found_out() {
-        let estimate = |functional, cpu| Estimate {
-            functional,
-            non_functional: vec![("cpu".to_owned(), cpu)],
-        };
-        assert!(estimate(0.0, 0.4).check().is_ok());
-        for (lie, name) in [
-            (estimate(f64::NAN, 0.4), "functional"),
-            (estimate(-0.1, 0.4), "functional"),
-            (estimate(0.1, f64::INFINITY), "cpu"),
-            (estimate(0.1, -1.0), "cpu"),
-        ] {
-            let error = lie.check().expect_err("a lie").to_string();
-            assert!(error.contains(name), "{error}");
         }
     }
 }

@@ -1,7 +1,8 @@
 //! One robot's place in the network: the shell over zenoh.
 //!
 //! Everything lies below `steadfast/`: `alive/R/life` are tokens, `beat/R` signs of life, `port/R/
-//! component/port` data, `fault/R` faults, and `database/R`, `estimate/R`, `package/R` are asked.
+//! component/port` data, `fault/R` faults, `task/R/S` and `flow/R/S/link` what R tells S about a task
+//! and gives it, and `database/R`, `package/R` are asked.
 //! zenoh's own threads bring what comes; what waits for this robot has a bound.
 
 mod access;
@@ -9,6 +10,7 @@ mod configuration;
 mod hearing;
 mod key;
 mod questions;
+mod tasks;
 
 use std::time::Duration;
 

@@ -4,18 +4,15 @@ use std::net::TcpListener;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-use robot_network::message::{
-    Beat, ComponentEntry, Database, Estimate, EstimateRequest, FaultNotice,
-};
+use robot_network::message::{Beat, ComponentEntry, Database, FaultNotice};
+use robot_network::task::{TaskContent, TaskMessage};
 use robot_network::{Answers, Heard, Node, NodeError, OpenOptions};
 
 /// Loopback needs milliseconds; a busy machine gets a thousand times that.
 const LIMIT: Duration = Duration::from_secs(20);
 
-/// A robot with one component, of which it has an estimate that may lie, and a package.
-struct Dehazing {
-    functional: f64,
-}
+/// A robot with one component, of which it has a package.
+struct Dehazing;
 
 impl Answers for Dehazing {
     fn database(&self) -> Database {
@@ -31,13 +28,6 @@ impl Answers for Dehazing {
                 offers: Vec::new(),
             }],
         }
-    }
-
-    fn estimate(&self, request: &EstimateRequest) -> Option<Estimate> {
-        (request.component == "dehazer").then(|| Estimate {
-            functional: self.functional,
-            non_functional: vec![("cpu".to_owned(), 0.4)],
-        })
     }
 
     fn package(&self, component: &str) -> Option<Vec<u8>> {
@@ -111,7 +101,7 @@ fn repeated_until<Item>(arrived: &Receiver<Item>, mut send: impl FnMut()) -> Ite
 
 #[test]
 fn robots_hear_beats_faults_and_data_and_see_each_other_go() {
-    let (first, second) = two(Dehazing { functional: 0.0 });
+    let (first, second) = two(Dehazing);
     let beat = Beat {
         incarnation: 7,
         term: 3,
@@ -154,23 +144,16 @@ fn robots_hear_beats_faults_and_data_and_see_each_other_go() {
 
 #[test]
 fn robots_answer_what_they_are_asked() {
-    let (first, _second) = two(Dehazing { functional: 0.25 });
+    let (first, _second) = two(Dehazing);
     let databases = first.databases(LIMIT).expect("asked");
     let names: Vec<&str> = databases.iter().map(|it| it.robot.as_str()).collect();
     assert_eq!(names, ["R1", "R2"]);
     assert_eq!(databases[1].components[0].library, "software_dehazer");
-    let request = |component: &str| EstimateRequest {
-        task: "visual_servoing".to_owned(),
-        component: component.to_owned(),
-    };
-    let estimate = first.estimate("R2", &request("dehazer"), LIMIT);
-    assert_eq!(estimate.expect("an estimate").functional, 0.25);
     let package = first.package("R2", "dehazer", LIMIT).expect("a package");
     assert_eq!(package.len(), 3 << 20);
     for nobody in [
-        first.estimate("R2", &request("nothing"), LIMIT).map(drop),
-        first.estimate("R9", &request("dehazer"), LIMIT).map(drop),
         first.package("R2", "nothing", LIMIT).map(drop),
+        first.package("R9", "dehazer", LIMIT).map(drop),
     ] {
         assert!(
             matches!(nobody, Err(NodeError::NoAnswer { .. })),
@@ -180,15 +163,46 @@ fn robots_answer_what_they_are_asked() {
 }
 
 #[test]
-fn an_estimator_that_lies_is_found_out() {
-    let (first, _second) = two(Dehazing { functional: -1.0 });
-    let request = EstimateRequest {
-        task: "visual_servoing".to_owned(),
-        component: "dehazer".to_owned(),
+fn what_is_told_about_a_task_reaches_one_robot_and_says_by_whom_it_comes() {
+    let (first, second) = two(Dehazing);
+    let (sender, told) = channel();
+    let flows = sender.clone();
+    let _tasks = second
+        .listen_to_tasks("R2", move |robot, message| {
+            let message = message.expect("a message");
+            let _over = sender.send(format!("{robot} tells in term {}", message.term));
+        })
+        .expect("listening");
+    let _flows = second
+        .listen_to_flows("R2", move |robot, name, frame| {
+            let _over = flows.send(format!("{robot} sends {} bytes by {name}", frame.len()));
+        })
+        .expect("listening");
+    let flow = first.flow_to("R1", "R2", "servoing/0/2").expect("a flow");
+    let message = TaskMessage {
+        task: "servoing".to_owned(),
+        term: 3,
+        incarnation: 1,
+        content: TaskContent::Running {
+            placements: vec![(0, 0)],
+            decided: None,
+        },
     };
-    let error = first.estimate("R2", &request, LIMIT).expect_err("a lie");
-    assert!(
-        error.to_string().contains("negative or no number"),
-        "{error}"
-    );
+    // Until the connection is there what is said reaches nobody.
+    let began = Instant::now();
+    let mut heard = Vec::new();
+    while heard.len() < 2 && began.elapsed() < LIMIT {
+        first.tell("R1", "R3", &message).expect("told");
+        first.tell("R1", "R2", &message).expect("told");
+        flow.send(&[0; 5]).expect("sent");
+        let new = told.recv_timeout(Duration::from_millis(50));
+        heard.extend(
+            new.into_iter()
+                .filter(|it| !heard.contains(it))
+                .collect::<Vec<_>>(),
+        );
+    }
+    heard.sort();
+    let expected = ["R1 sends 5 bytes by servoing/0/2", "R1 tells in term 3"];
+    assert_eq!(heard, expected);
 }

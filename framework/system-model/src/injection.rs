@@ -98,7 +98,12 @@ pub enum InjectedFault {
         distortion: Distortion,
     },
     /// In the simulated world.
-    World(WorldFault),
+    World {
+        /// Index of a component in whose application's world it is; `None`: in the first world.
+        component: Option<usize>,
+        /// What goes wrong there.
+        fault: WorldFault,
+    },
     /// In the container's own handling.
     Container {
         /// Index of the component.
@@ -115,7 +120,7 @@ impl InjectedFault {
             Self::Callback { misbehaviour, .. } => {
                 matches!(misbehaviour, Misbehaviour::Slow(_) | Misbehaviour::Leak(_))
             }
-            Self::Port { .. } | Self::World(_) => true,
+            Self::Port { .. } | Self::World { .. } => true,
             Self::Container { .. } => false,
         }
     }
@@ -126,7 +131,7 @@ impl InjectedFault {
             Self::Callback { component, .. }
             | Self::Port { component, .. }
             | Self::Container { component, .. } => Some(*component),
-            Self::World(_) => None,
+            Self::World { .. } => None,
         }
     }
 
@@ -135,7 +140,7 @@ impl InjectedFault {
         match self {
             Self::Callback { misbehaviour, .. } => misbehaviour.name(),
             Self::Port { distortion, .. } => distortion.name(),
-            Self::World(fault) => fault.name(),
+            Self::World { fault, .. } => fault.name(),
             Self::Container { failure, .. } => failure.name(),
         }
     }

@@ -112,6 +112,22 @@ impl Decider {
         effects
     }
 
+    /// Another robot decides, and this is what runs: a decision that is under way is overtaken.
+    pub fn follow(&mut self, running: Vec<Placement>, now: Duration) -> Vec<Effect> {
+        let mut effects = Vec::new();
+        if let Some(mut decision) = self.decision.take() {
+            decision.step = Step::Over(Outcome::Overtaken);
+            self.go_on(decision, now, &mut effects);
+        }
+        if self.running != running {
+            self.running = running;
+            self.evaluated = None;
+        }
+        self.bad = BadEvaluations::default();
+        self.rests_since = None;
+        effects
+    }
+
     fn change_task(&mut self, task: TaskSpecification, now: Duration, effects: &mut Vec<Effect>) {
         self.task = task;
         let candidates_are_old =

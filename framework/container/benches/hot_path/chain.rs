@@ -11,7 +11,6 @@ use container::clock::Clock;
 use container::component::{
     Component as Running, ComponentCell, DataInput, DataOutput, Environment, PortEnd, Services,
 };
-use container::device::Devices;
 use container::event_log::EventLog;
 use container::executor::{Executor, Member};
 use container::guard::{CodeRange, Guarded};
@@ -22,6 +21,7 @@ use container::schedule::BusyTime;
 use container::status::ComponentStatus;
 use container::supervision::{LOOK_PERIOD, Monitors, Observations, Scenes};
 use container::wake::Wake;
+use container::world::Worlds;
 use criterion::Criterion;
 use system_model::data_type::{DataType, Field, Scalar};
 use system_model::life_cycle::Operation;
@@ -176,11 +176,10 @@ fn time_cycles(length: usize, count: u64, monitored: bool) -> Duration {
     let environment = Arc::new(Environment {
         clock: Clock::simulated(),
         events,
-        devices: Devices::default(),
         observations: Observations::default(),
         scenes: Scenes::default(),
         injections: Injections::default(),
-        world: None,
+        worlds: Worlds::default(),
         score: None,
         adaptation_requests: AdaptationRequests::default(),
         busy: BusyTime::default(),

@@ -5,34 +5,36 @@ use fault_manager::detection::NumberReader;
 use system_model::profile::Located;
 use system_model::specification::{PortKind, PortReference, QueuePolicy};
 use system_model::task::{
-    ComponentIndex, ContainerFigure, Evaluator, Placement, QualityAttribute, ResourceIndex,
-    RobotIndex, TaskInstance, TaskSpecification,
+    ContainerFigure, Evaluator, Placement, QualityAttribute, ResourceIndex, RobotIndex,
+    TaskInstance, TaskSpecification,
 };
 
 use super::AttachedTask;
 use super::known::{Known, misfit};
-use super::linking::routes;
-use super::wiring::{PortKey, Route};
+use super::linking::{LinkEnd, link_ends};
+use super::wiring::{Hop, PortKey};
 use crate::assembly::AssemblyProblem;
 
 /// A task as it is bound to this system.
 pub struct Binding {
     /// The task.
     pub task: TaskSpecification,
-    /// The robot of the task that this system is.
-    pub robot: RobotIndex,
-    /// By component of the task; none for one that this robot does not have.
-    pub parts: Vec<Option<Part>>,
-    /// Links between components of this robot.
-    pub routes: Vec<Route>,
-    /// What ports tell of the robot's resources.
+    /// The robots of the task whose applications this system runs.
+    pub robots: Vec<RobotIndex>,
+    /// What these robots have of it.
+    pub parts: Vec<Part>,
+    /// Where they meet its links.
+    pub ends: Vec<LinkEnd>,
+    /// What ports tell of the robots' resources.
     pub sensors: Vec<BoundSensor>,
     /// What inputs of links keep.
     queues: Vec<(PortKey, (QueuePolicy, usize))>,
 }
 
-/// A component of the task on this robot.
+/// A component of the task on a robot of this system.
 pub struct Part {
+    /// Which component of the task, on which robot.
+    pub placement: Placement,
     /// Index among all components of the system.
     pub component: usize,
     /// What tells its functional error.
@@ -61,6 +63,8 @@ pub struct BoundEvaluator {
 
 /// A port that tells what the robot has of a resource.
 pub struct BoundSensor {
+    /// Which robot of the task.
+    pub robot: RobotIndex,
     /// Which resource.
     pub resource: ResourceIndex,
     /// The output.
@@ -72,68 +76,91 @@ pub struct BoundSensor {
 }
 
 impl Binding {
-    /// Binds a task.
+    /// Binds a task to the applications of one or more of its robots; it is the same for all.
     ///
     /// # Errors
-    /// Everything of it that the application does not have.
-    pub fn new(attached: &AttachedTask, known: &Known<'_>) -> Result<Self, Vec<AssemblyProblem>> {
-        let AttachedTask { task, robot, place } = attached;
-        let (task, robot) = (task.clone(), *robot);
+    /// Everything of it that the applications do not have.
+    pub fn new(attached: &[(&AttachedTask, Known<'_>)]) -> Result<Self, Vec<AssemblyProblem>> {
+        let Some((first, _)) = attached.first() else {
+            return Err(Vec::new());
+        };
         let mut problems = Vec::new();
-        if task.running.is_none() {
+        let mut binding = Self {
+            task: first.task.clone(),
+            robots: attached.iter().map(|(it, _)| it.robot).collect(),
+            parts: Vec::new(),
+            ends: Vec::new(),
+            sensors: Vec::new(),
+            queues: Vec::new(),
+        };
+        if first.task.running.is_none() {
             problems.push(misfit(
-                place,
-                format!("the task '{}' does not say what runs", task.name),
+                &first.place,
+                format!("the task '{}' does not say what runs", first.task.name),
                 "write <running> into its file: what runs when the application starts",
             ));
         }
-        let parts = parts(&task, robot, known, &mut problems);
-        let routes = routes(&task, &parts, known, &mut problems);
+        for (task, known) in attached {
+            binding.add(task.robot, known, &mut problems);
+        }
+        match problems.is_empty() {
+            true => Ok(binding),
+            false => Err(problems),
+        }
+    }
+
+    fn add(&mut self, robot: RobotIndex, known: &Known<'_>, problems: &mut Vec<AssemblyProblem>) {
+        let Self { task, parts, .. } = self;
+        for instance in &task.robots[robot].instances {
+            parts.extend(part(task, robot, instance, known, problems));
+        }
+        let ends = link_ends(&task.links, robot, parts, known, problems);
+        let inputs = ends.iter().filter_map(|end| end.input.as_ref());
+        let queues = inputs.map(|input| (input.clone(), known.queue(input)));
+        self.queues.extend(queues);
+        self.ends.extend(ends);
         let sensors = task.robots[robot].sensors.iter().filter_map(|sensor| {
             let Located { value, place } = sensor;
-            let component = known.component(&value.subcomponent, place, &mut problems)?;
+            let component = known.component(&value.subcomponent, place, problems)?;
             let field = value.field.as_deref();
-            let found = known.number(component, &value.port, field, place, &mut problems);
+            let found = known.number(component, &value.port, field, place, problems);
             let (key, reader) = found?;
             Some(BoundSensor {
+                robot,
                 resource: value.resource,
                 key,
                 reader,
                 scale: value.scale,
             })
         });
-        let sensors = sensors.collect();
-        let inputs = routes.iter().flat_map(|route| {
-            let stages = route.through.iter().map(|stage| &stage.input);
-            stages.chain([&route.to])
-        });
-        let queues = inputs.map(|input| (input.clone(), known.queue(input)));
-        let queues = queues.collect();
-        match problems.is_empty() {
-            true => Ok(Self {
-                task,
-                robot,
-                parts,
-                routes,
-                sensors,
-                queues,
-            }),
-            false => Err(problems),
-        }
+        self.sensors.extend(sensors);
     }
 
-    /// The part of this robot that a placement is; none on another robot.
+    /// The part of this system that a placement is; none on a robot elsewhere.
     pub fn part(&self, placement: Placement) -> Option<&Part> {
-        if placement.robot != self.robot {
-            return None;
-        }
-        self.parts.get(placement.component)?.as_ref()
+        self.parts.iter().find(|it| it.placement == placement)
     }
 
-    /// Which component of the task a component of the system is.
-    pub fn task_component(&self, component: usize) -> Option<ComponentIndex> {
-        let is_it = |part: &Option<Part>| part.as_ref().is_some_and(|it| it.component == component);
-        self.parts.iter().position(is_it)
+    /// The part of the task that a component of the system is.
+    pub fn part_of(&self, component: usize) -> Option<&Part> {
+        self.parts.iter().find(|it| it.component == component)
+    }
+
+    /// The output at the beginning of a connection, if it is of this system.
+    pub fn output(&self, hop: &Hop) -> Option<(&PortKey, &LinkEnd)> {
+        let end = self.end(hop.link, hop.from)?;
+        Some((end.output.as_ref()?, end))
+    }
+
+    /// The input at the end of a connection, if it is of this system.
+    pub fn input(&self, hop: &Hop) -> Option<(&PortKey, &LinkEnd)> {
+        let end = self.end(hop.link, hop.to)?;
+        Some((end.input.as_ref()?, end))
+    }
+
+    fn end(&self, link: usize, placement: Placement) -> Option<&LinkEnd> {
+        let mut ends = self.ends.iter();
+        ends.find(|it| it.link == link && it.placement == placement)
     }
 
     /// What an input of a link keeps.
@@ -152,13 +179,10 @@ impl Binding {
     /// Every output whose data are asked for: by evaluators and sensors, at the beginning of
     /// connections that may be made, and where inputs of those that are estimated come from.
     pub fn outlets(&self) -> Vec<PortKey> {
-        let parts = || self.parts.iter().flatten();
+        let parts = || self.parts.iter();
         let evaluators = parts().flat_map(|part| part.evaluators.iter().map(|it| &it.key));
         let sensors = self.sensors.iter().map(|sensor| &sensor.key);
-        let links = self.routes.iter().flat_map(|route| {
-            let stages = route.through.iter().map(|stage| &stage.output);
-            stages.chain([&route.from])
-        });
+        let links = self.ends.iter().filter_map(|end| end.output.as_ref());
         let inputs = parts().flat_map(|part| part.sources.iter().map(|(source, _)| source));
         let all = evaluators.chain(sensors).chain(links).chain(inputs);
         let mut outlets: Vec<PortKey> = all.cloned().collect();
@@ -168,21 +192,9 @@ impl Binding {
     }
 }
 
-fn parts(
-    task: &TaskSpecification,
-    robot: RobotIndex,
-    known: &Known<'_>,
-    problems: &mut Vec<AssemblyProblem>,
-) -> Vec<Option<Part>> {
-    let mut parts: Vec<Option<Part>> = task.components.iter().map(|_| None).collect();
-    for instance in &task.robots[robot].instances {
-        parts[instance.component] = part(task, instance, known, problems);
-    }
-    parts
-}
-
 fn part(
     task: &TaskSpecification,
+    robot: RobotIndex,
     instance: &TaskInstance,
     known: &Known<'_>,
     problems: &mut Vec<AssemblyProblem>,
@@ -203,6 +215,10 @@ fn part(
     let inputs = known.specification.connections.iter();
     let inputs = inputs.filter(|it| it.kind == PortKind::Data && it.target.component == component);
     Some(Part {
+        placement: Placement {
+            component: instance.component,
+            robot,
+        },
         component,
         evaluators,
         own_estimate,

@@ -1,16 +1,16 @@
 //! From one way of doing the task to another on this robot: make before break. New components are
 //! started and work on the newest data at once; an input changes over to a new source when that has
 //! written a first good datum; the old connections and components are kept until the new way of doing
-//! the task has been found good. If that does not happen everything goes back.
+//! the task has been found good by whoever decides. If that does not happen everything goes back.
 
 use system_model::life_cycle::{LifeCycleState, Operation};
 use system_model::specification::ExecutionKind;
-use system_model::task::Placement;
-use task_adaptation::judge;
+use system_model::task::{ComponentIndex, Placement};
 
 use super::local::LocalRobot;
 use super::wiring::{Hop, added, affected};
 use crate::component::OperationError;
+use crate::guard::Callback;
 use crate::lane::Lane;
 use crate::port::Receiver;
 
@@ -43,14 +43,15 @@ pub(super) struct Switch {
 pub enum Progress {
     /// It goes on, or there is none.
     UnderWay,
-    /// It is done.
-    Done,
+    /// All inputs have changed over; what is not needed any more is still there.
+    Switched,
     /// It has failed; what ran goes on.
     Failed(String),
 }
 
 impl LocalRobot {
-    /// Begins a change; [`Self::go_on`] does the rest.
+    /// Begins a change; [`Self::advance`] goes on with it. Components that ran on another robot go on
+    /// from `memories`, which are by component of the task.
     ///
     /// # Errors
     /// Why it cannot be begun; what ran goes on.
@@ -58,6 +59,7 @@ impl LocalRobot {
         &mut self,
         wanted: &[Placement],
         before: &[Placement],
+        memories: &[(ComponentIndex, Vec<u8>)],
         lane: &Lane,
     ) -> Result<(), String> {
         self.change = Some(Change {
@@ -68,7 +70,7 @@ impl LocalRobot {
             switches: Vec::new(),
             is_switched: false,
         });
-        let made = self.make(wanted, before, lane);
+        let made = self.make(wanted, before, memories, lane);
         if made.is_err() {
             self.go_back(lane);
         }
@@ -79,6 +81,7 @@ impl LocalRobot {
         &mut self,
         wanted: &[Placement],
         before: &[Placement],
+        memories: &[(ComponentIndex, Vec<u8>)],
         lane: &Lane,
     ) -> Result<(), String> {
         let ran = self.members(before);
@@ -90,10 +93,15 @@ impl LocalRobot {
                 return Err(format!("'{}' is {state}", self.statuses[*component].name));
             }
         }
-        for hop in added(&self.hops(wanted), &self.hops(before)) {
-            let receiver = self.connect(&hop, lane)?;
-            if new.contains(&hop.to.component) {
-                self.plug_in(&hop.to, Some(receiver), lane)?;
+        let mut hops = added(&self.hops(wanted), &self.hops(before));
+        // What comes back from another robot is to find its way in.
+        hops.sort_by_key(|hop| self.binding.input(hop).is_none());
+        for hop in hops {
+            let Some((input, receiver)) = self.connect(&hop, lane)? else {
+                continue;
+            };
+            if new.contains(&input.component) {
+                self.plug_in(&input, Some(receiver), lane)?;
             } else if let Some(change) = &mut self.change {
                 change.switches.push(Switch {
                     hop,
@@ -103,13 +111,23 @@ impl LocalRobot {
             }
         }
         for component in new {
-            self.start(component, lane)?;
+            let part = self.binding.part_of(component);
+            let task_component = part.map(|part| part.placement.component);
+            let memory = memories.iter().find(|(of, _)| Some(*of) == task_component);
+            self.start(component, memory.map(|(_, memory)| memory.as_slice()), lane)?;
         }
         Ok(())
     }
 
+    /// The registered memory of a component that leaves this system's robots, or goes from one of them to
+    /// another; none if it has registered none.
+    pub(super) fn memory(&self, placement: Placement, lane: &Lane) -> Option<Vec<u8>> {
+        let part = self.binding.part(placement)?;
+        self.enter(part.component, lane).ok()?.critical_copy()
+    }
+
     /// Starts a component, and lets it work on what it has been given.
-    fn start(&mut self, index: usize, lane: &Lane) -> Result<(), String> {
+    fn start(&mut self, index: usize, memory: Option<&[u8]>, lane: &Lane) -> Result<(), String> {
         let status = &self.statuses[index];
         let name = status.name.clone();
         if let Some(change) = &mut self.change {
@@ -117,8 +135,7 @@ impl LocalRobot {
         }
         status.set_dormant(false);
         let mut component = self.enter(index, lane)?;
-        let started = component.operate(Operation::Start, lane.loss());
-        started.map_err(|error| match error {
+        let words = |error| match error {
             OperationError::Refused => format!("'{name}' cannot be started"),
             OperationError::Failed(fault) => {
                 format!(
@@ -126,7 +143,14 @@ impl LocalRobot {
                     fault.kind, fault.callback, fault.message
                 )
             }
-        })?;
+        };
+        if memory.is_some_and(|memory| component.set_critical(memory)) {
+            let recovered = component.call_back(Callback::Recover, "onRecover", lane.loss());
+            recovered.map_err(words)?;
+        }
+        component
+            .operate(Operation::Start, lane.loss())
+            .map_err(words)?;
         if self.executions[index].0 != ExecutionKind::Passive {
             component.execute(self.now_ns(), lane.loss());
         }
@@ -136,8 +160,8 @@ impl LocalRobot {
         Ok(())
     }
 
-    /// Goes on with the change that is under way.
-    pub fn go_on(&mut self, lane: &Lane) -> Progress {
+    /// Goes on with the change that is under way. Where it fails everything goes back.
+    pub fn advance(&mut self, lane: &Lane) -> Progress {
         let Some(change) = &self.change else {
             return Progress::UnderWay;
         };
@@ -145,23 +169,16 @@ impl LocalRobot {
             self.go_back(lane);
             return Progress::Failed(how);
         }
-        if !change.is_switched {
-            if let Err(how) = self.switch_over(lane) {
-                self.go_back(lane);
-                return Progress::Failed(how);
-            }
-            return Progress::UnderWay;
+        if !change.is_switched
+            && let Err(how) = self.switch_over(lane)
+        {
+            self.go_back(lane);
+            return Progress::Failed(how);
         }
-        let wanted = change.wanted.clone();
-        let is_good = self.performances(&wanted).is_some_and(|answer| {
-            let (quality, rejections) = judge(&self.binding.task, &wanted, &answer);
-            quality.is_some() && rejections.is_empty()
-        });
-        if !is_good {
-            return Progress::UnderWay;
+        match &self.change {
+            Some(change) if change.is_switched => Progress::Switched,
+            _ => Progress::UnderWay,
         }
-        self.finish(lane);
-        Progress::Done
     }
 
     /// A component that was started for it, and does not run as it did then.
@@ -181,17 +198,22 @@ impl LocalRobot {
         ))
     }
 
-    /// Whether a source has written something good since the change was begun.
+    /// Whether a source has written something good since the change was begun; of one elsewhere
+    /// whether anything has come from it.
     fn is_good_source(&self, change: &Change, hop: &Hop) -> bool {
-        let source = hop.from.component;
+        let Some((output, _)) = self.binding.output(hop) else {
+            let passage = self.passage.as_ref();
+            let came_ns = passage.and_then(|it| it.newest_ns(hop));
+            return came_ns.is_some_and(|came_ns| came_ns >= change.begun_ns);
+        };
+        let source = output.component;
         if !change.started.iter().any(|(started, _)| *started == source) {
             return true;
         }
-        let newest = self.outlet(&hop.from).and_then(|outlet| outlet.newest());
-        let component = self.binding.task_component(source);
-        let part = component.and_then(|index| Some((index, self.binding.parts[index].as_ref()?)));
-        let is_good = part.is_none_or(|(index, part)| {
-            let threshold = self.binding.task.components[index].threshold;
+        let newest = self.outlet(output).and_then(|outlet| outlet.newest());
+        let part = self.binding.part(hop.from);
+        let is_good = part.is_none_or(|part| {
+            let threshold = self.binding.task.components[part.placement.component].threshold;
             part.evaluators.is_empty() || self.error(part).is_some_and(|error| error <= threshold)
         });
         is_good && newest.is_some_and(|it| it.stamp_ns >= change.begun_ns)
@@ -218,10 +240,13 @@ impl LocalRobot {
         let (wanted, before) = (change.wanted.clone(), change.before.clone());
         // What was written before tells nothing of the new way of doing the task.
         let affected = affected(&self.hops(&wanted), &self.hops(&before));
-        for outlet in &mut self.outlets {
-            if affected.contains(&outlet.key.component) {
-                outlet.forget_before(now_ns);
-            }
+        for placement in affected {
+            let Some(part) = self.binding.part(placement) else {
+                continue;
+            };
+            let outlets = self.outlets.iter_mut();
+            let own = outlets.filter(|it| it.key.component == part.component);
+            own.for_each(|outlet| outlet.forget_before(now_ns));
         }
         Ok(())
     }
@@ -232,8 +257,11 @@ impl LocalRobot {
             return Ok(());
         };
         let aside = change.switches[index].aside.take();
-        let hop = change.switches[index].hop.clone();
-        let old = self.plug_in(&hop.to, aside, lane)?;
+        let hop = change.switches[index].hop;
+        let Some((input, _)) = self.binding.input(&hop) else {
+            return Ok(());
+        };
+        let old = self.plug_in(input, aside, lane)?;
         if let Some(change) = &mut self.change {
             let switch = &mut change.switches[index];
             (switch.aside, switch.is_done) = (old, !switch.is_done);

@@ -1,4 +1,4 @@
-//! How well components of this robot do that run: their errors by what their ports tell, their use of
+//! How well components of this system do that run: their errors by what their ports tell, their use of
 //! resources by the container's own figures.
 
 use std::time::Duration;
@@ -103,7 +103,7 @@ impl LocalRobot {
                 continue;
             };
             let amount = sensor.reader.read(&newest.bytes) * sensor.scale;
-            let (robot, resource) = (self.binding.robot, sensor.resource);
+            let (robot, resource) = (sensor.robot, sensor.resource);
             let available = &mut self.binding.task.robots[robot].available[resource];
             // A sensor that lies does not change what is known.
             if amount.is_finite() && amount >= 0.0 && *available != amount {

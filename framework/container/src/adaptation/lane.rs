@@ -28,10 +28,10 @@ impl AdaptationLane {
         environment: Arc<Environment>,
     ) -> Self {
         Self {
+            wake: adaptation.wake().unwrap_or_default(),
             adaptation,
             components,
             environment,
-            wake: Arc::default(),
         }
     }
 }

@@ -1,5 +1,5 @@
-//! What there is of the task on this robot: its components, what is heard of them, and the change that
-//! is under way.
+//! What there is of the task in this system: the components of its robots, what is heard of them, and
+//! the change that is under way.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -12,6 +12,7 @@ use super::change::Change;
 use super::losses::Losses;
 use super::outlet::Outlet;
 use super::overruns::Overruns;
+use super::passage::Passage;
 use super::wiring::{Hop, PortKey, hops};
 use crate::assembly::{Assembly, Factory};
 use crate::clock::nanoseconds;
@@ -29,7 +30,7 @@ const OUTLET_QUEUE: usize = 64;
 /// a service call may take by default.
 const ENTER_LIMIT: Duration = Duration::from_secs(1);
 
-/// This robot.
+/// The robots of the task whose applications this system runs; mostly one.
 pub struct LocalRobot {
     pub(super) binding: Binding,
     pub(super) components: Vec<Arc<ComponentCell>>,
@@ -44,9 +45,9 @@ pub struct LocalRobot {
     /// Some evaluator has something new to look at.
     pub(super) has_heard: bool,
     pub(super) change: Option<Change>,
-    /// Decision and candidate that the change is for.
-    pub(super) asked: (u64, usize),
     pub(super) losses: Losses,
+    /// The way to robots elsewhere, if there is one.
+    pub(super) passage: Option<Box<dyn Passage>>,
 }
 
 impl LocalRobot {
@@ -57,6 +58,7 @@ impl LocalRobot {
         assembly: &Assembly,
         environment: Arc<Environment>,
         meter: Arc<Meter>,
+        passage: Option<Box<dyn Passage>>,
     ) -> Self {
         let execution = |component: usize| {
             let runs = |number: u32| usize::try_from(number) == Ok(component);
@@ -77,8 +79,8 @@ impl LocalRobot {
             outlets: Vec::new(),
             has_heard: false,
             change: None,
-            asked: (0, 0),
             losses: Losses::default(),
+            passage,
             binding,
         };
         for key in robot.binding.outlets() {
@@ -86,11 +88,9 @@ impl LocalRobot {
         }
         robot.keep_windows();
         let running = robot.binding.task.running.clone().unwrap_or_default();
-        for (index, part) in robot.binding.parts.iter().enumerate() {
-            let Some(part) = part else { continue };
+        for part in &robot.binding.parts {
             robot.components[part.component].share();
-            let runs = running.iter().any(|it| it.component == index);
-            robot.statuses[part.component].set_dormant(!runs);
+            robot.statuses[part.component].set_dormant(!running.contains(&part.placement));
         }
         robot
     }
@@ -114,8 +114,8 @@ impl LocalRobot {
         let Self {
             binding, outlets, ..
         } = self;
-        let evaluators = binding.parts.iter_mut().flatten();
-        for evaluator in evaluators.flat_map(|part| &mut part.evaluators) {
+        let parts = binding.parts.iter_mut();
+        for evaluator in parts.flat_map(|part| &mut part.evaluators) {
             let outlet = outlets.iter_mut().find(|it| it.key == evaluator.key);
             if let QualityAttribute::StandardDeviation { window } = evaluator.rule.attribute
                 && let (Some(outlet), Some(reader)) = (outlet, &evaluator.reader)
@@ -130,7 +130,7 @@ impl LocalRobot {
         for outlet in &mut self.outlets {
             let came = outlet.listen();
             let key = &outlet.key;
-            let mut parts = self.binding.parts.iter().flatten();
+            let mut parts = self.binding.parts.iter();
             self.has_heard |=
                 came && parts.any(|part| part.evaluators.iter().any(|it| it.key == *key));
         }
@@ -152,13 +152,10 @@ impl LocalRobot {
 
     /// The connections that the task needs where these components are in use.
     pub(super) fn hops(&self, placements: &[Placement]) -> Vec<Hop> {
-        hops(&self.binding.routes, |component| {
-            let mut placements = placements.iter();
-            placements.any(|it| it.component == component && it.robot == self.binding.robot)
-        })
+        hops(&self.binding.task.links, placements)
     }
 
-    /// Components of the system that placements of this robot are, in the order of the task.
+    /// Components of the system that placements are, in the order of the task.
     pub(super) fn members(&self, placements: &[Placement]) -> Vec<usize> {
         let parts = placements.iter().filter_map(|it| self.binding.part(*it));
         parts.map(|part| part.component).collect()

@@ -41,7 +41,7 @@ impl LocalRobot {
             !(state == LifeCycleState::Active
                 || status.is_dormant() && state != LifeCycleState::Error)
         };
-        let parts = self.binding.parts.iter().flatten();
+        let parts = self.binding.parts.iter();
         let down: Vec<usize> = parts.map(|it| it.component).filter(is_down).collect();
         let losses = &mut self.losses;
         losses.given_up.retain(|component| down.contains(component));
@@ -64,16 +64,20 @@ impl LocalRobot {
         changed
     }
 
-    /// The task with what this robot has now.
+    /// The task with what this system's robots have now.
     pub(super) fn task_as_it_is(&self) -> TaskSpecification {
         let mut task = self.binding.task.clone();
-        let lost = |component: usize| {
-            let part = self.binding.parts[component].as_ref();
+        let lost = |placement: Placement| {
+            let part = self.binding.part(placement);
             part.is_some_and(|part| self.losses.lost.contains(&part.component))
         };
-        task.robots[self.binding.robot]
-            .instances
-            .retain(|instance| !lost(instance.component));
+        for robot in &self.binding.robots {
+            let (robot, instances) = (*robot, &mut task.robots[*robot].instances);
+            instances.retain(|instance| {
+                let component = instance.component;
+                !lost(Placement { component, robot })
+            });
+        }
         task
     }
 
@@ -81,7 +85,7 @@ impl LocalRobot {
     /// its rules, and then runs though nobody wants it.
     pub(super) fn keep_asleep(&self, running: &[Placement], lane: &Lane) {
         let wanted = self.members(running);
-        for part in self.binding.parts.iter().flatten() {
+        for part in &self.binding.parts {
             let is_active = self.statuses[part.component].state() == LifeCycleState::Active;
             if is_active && !wanted.contains(&part.component) && !self.is_started(part.component) {
                 self.put_to_sleep(part.component, lane);

@@ -16,9 +16,9 @@ impl LocalRobot {
         let stays = self.members(&change.wanted);
         for hop in added(&present, &wanted) {
             let mut switches = change.switches.iter();
-            let aside = switches.find(|it| it.hop.to == hop.to);
+            let aside = switches.find(|it| (it.hop.link, it.hop.to) == (hop.link, hop.to));
             match aside.and_then(|switch| switch.aside.as_ref()) {
-                Some(old) => self.unplug(&hop.from, old, lane),
+                Some(old) => self.release(&hop, old, lane),
                 None => self.disconnect(&hop, lane),
             }
         }
@@ -46,13 +46,13 @@ impl LocalRobot {
         };
         for switch in &change.switches {
             if let Some(new) = &switch.aside {
-                self.unplug(&switch.hop.from, new, lane);
+                self.release(&switch.hop, new, lane);
             }
         }
         let new = added(&self.hops(&change.wanted), &self.hops(&change.before));
         for hop in new {
-            let mut started = change.started.iter();
-            if started.any(|(component, _)| *component == hop.to.component) {
+            let mut switches = change.switches.iter();
+            if !switches.any(|it| it.hop == hop) {
                 self.disconnect(&hop, lane);
             }
         }

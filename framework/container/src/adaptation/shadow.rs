@@ -16,8 +16,6 @@ use crate::status::ComponentStatus;
 
 /// An instance with the far ends of its ports.
 pub struct Shadow {
-    /// Index of the component that it is an instance of.
-    pub component: usize,
     /// The component's name.
     pub name: String,
     instance: Component,
@@ -30,18 +28,12 @@ impl Shadow {
     ///
     /// # Errors
     /// Why it does not come up; in words.
-    pub fn new(
-        component: usize,
-        factory: &Factory,
-        memory: Option<Vec<u8>>,
-        lane: &Lane,
-    ) -> Result<Self, String> {
+    pub fn new(factory: &Factory, memory: Option<Vec<u8>>, lane: &Lane) -> Result<Self, String> {
         let name = factory.variants().first();
         let name = name.map_or_else(String::new, |first| first.specification.name.clone());
         let status = Arc::new(ComponentStatus::standby(name.clone()));
         let instance = factory.make(0, status)?;
         let mut shadow = Self {
-            component,
             instance,
             inputs: Vec::new(),
             outputs: Vec::new(),

@@ -6,14 +6,15 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use fault_manager::{ActionId, ActionOutcome};
-use task_adaptation::{Answer, Decider, DeciderState, Effect, Observation, Outcome, generate};
+use task_adaptation::{Decider, DeciderState, Effect, Observation, Outcome, generate};
 
-use super::performer::{Performer, Request};
 use super::record::AdaptationRecord;
+use super::team::{Request, Team};
 use crate::clock::nanoseconds;
 use crate::component::Environment;
 use crate::event_log::Event;
 use crate::lane::Lane;
+use crate::wake::Wake;
 
 /// How often a change that is under way is looked at: a fraction of any period of a robot's data.
 const CHANGE_PERIOD: Duration = Duration::from_millis(1);
@@ -21,12 +22,10 @@ const CHANGE_PERIOD: Duration = Duration::from_millis(1);
 /// One task that is watched over.
 pub struct Adaptation {
     decider: Decider,
-    performer: Box<dyn Performer>,
+    team: Team,
     environment: Arc<Environment>,
     /// What is to be done; kept here and not on a stack that may be lost.
     effects: VecDeque<Effect>,
-    /// The estimate that is under way: decision and candidate.
-    estimating: Option<(u64, usize)>,
     /// When what runs is evaluated next, in nanoseconds.
     evaluates_ns: u64,
     /// What the fault manager waits for: components, and its actions.
@@ -35,31 +34,31 @@ pub struct Adaptation {
 
 impl Adaptation {
     /// Watches over a task; nothing of it runs yet.
-    pub fn new(
-        decider: Decider,
-        performer: Box<dyn Performer>,
-        environment: Arc<Environment>,
-    ) -> Self {
+    pub fn new(decider: Decider, team: Team, environment: Arc<Environment>) -> Self {
         Self {
             decider,
-            performer,
+            team,
             environment,
             effects: VecDeque::new(),
-            estimating: None,
             evaluates_ns: 0,
             asked: Vec::new(),
         }
     }
 
+    /// What becomes awake when other robots have told something.
+    pub fn wake(&self) -> Option<Arc<Wake>> {
+        self.team.wake()
+    }
+
     /// When it wants to look next, in nanoseconds of the container's clock.
     pub fn due_ns(&self) -> u64 {
         let requests = &self.environment.adaptation_requests;
-        if !self.effects.is_empty() || requests.any(|component| self.performer.owns(component)) {
+        if !self.effects.is_empty() || requests.any(|component| self.team.owns(component)) {
             return 0;
         }
         let decider = self.decider.deadline().map_or(u64::MAX, nanoseconds);
         let due_ns = self.evaluates_ns.min(decider);
-        match self.performer.is_changing() {
+        match self.team.is_changing() {
             true => due_ns.min(self.environment.clock.now_ns() + nanoseconds(CHANGE_PERIOD)),
             false => due_ns,
         }
@@ -67,6 +66,7 @@ impl Adaptation {
 
     /// Looks, and does what is due. Runs code of components.
     pub fn look(&mut self, lane: &Lane) {
+        self.attend(lane);
         self.take_requests();
         self.work_off(lane);
         let now = self.environment.clock.now();
@@ -79,14 +79,29 @@ impl Adaptation {
         if self
             .decider
             .deadline()
-            .is_some_and(|deadline| deadline <= now)
+            .is_some_and(|deadline| deadline <= now && self.team.decides())
         {
             self.observe(Observation::TimePassed);
             self.work_off(lane);
         }
-        while let Some(answer) = self.performer.go_on(lane) {
+        while let Some(answer) = self.team.go_on(lane) {
             self.observe(answer);
             self.work_off(lane);
+        }
+    }
+
+    /// Takes what other robots have told.
+    fn attend(&mut self, lane: &Lane) {
+        let news = self.team.attend(self.decider.running(), lane);
+        if let Some(running) = news.running {
+            let now = self.environment.clock.now();
+            self.effects.extend(self.decider.follow(running, now));
+        }
+        if let Some(how) = news.decided {
+            self.answer_requests(&how);
+        }
+        for answer in news.answers {
+            self.observe(answer);
         }
     }
 
@@ -94,32 +109,30 @@ impl Adaptation {
     /// other end; of a change the component tells. Whether the component was run for an estimate
     /// only, so that nothing has happened to the one that runs.
     pub fn after_loss(&mut self) -> bool {
-        let Some((decision, number)) = self.estimating.take() else {
+        let Some(answer) = self.team.after_loss() else {
             return false;
         };
-        self.observe(Observation::Estimated {
-            decision,
-            number,
-            answer: Answer::Crashed("its thread was lost in the C library".to_owned()),
-        });
+        if let Some(answer) = answer {
+            self.observe(answer);
+        }
         true
     }
 
     /// What the fault manager has given up is no instance any more; what runs is decided upon anew.
     fn take_requests(&mut self) {
         let requests = &self.environment.adaptation_requests;
-        let asked = requests.take(|component| self.performer.owns(component));
+        let asked = requests.take(|component| self.team.owns(component));
         if asked.is_empty() {
             return;
         }
         for (component, _) in &asked {
-            self.performer.give_up(*component);
+            self.team.give_up(*component);
         }
         self.asked.extend(asked);
-        if let Some(task) = self.performer.changed_task() {
-            self.observe(Observation::TaskChanged(Box::new(task)));
+        if self.team.decides() {
+            self.look_at_robots();
+            self.answer_requests("it was not in use");
         }
-        self.answer_requests("it was not in use");
     }
 
     /// Tells the fault manager of components without which the task is done now, or without which
@@ -128,7 +141,7 @@ impl Adaptation {
         let decides = self.decider.state() != DeciderState::Monitoring;
         let asked = std::mem::take(&mut self.asked);
         for (component, action) in asked {
-            let is_used = self.performer.uses(self.decider.running(), component);
+            let is_used = self.team.uses(self.decider.running(), component);
             if is_used && decides {
                 self.asked.push((component, action));
                 continue;
@@ -148,15 +161,19 @@ impl Adaptation {
     }
 
     fn evaluate(&mut self, lane: &Lane) {
-        let is_due = self.performer.listen(self.decider.running(), lane);
-        if self.decider.state() != DeciderState::Monitoring {
+        let is_due = self.team.listen(self.decider.running(), lane);
+        if self.decider.state() != DeciderState::Monitoring || !self.team.decides() {
             return;
         }
-        if let Some(task) = self.performer.changed_task() {
-            self.observe(Observation::TaskChanged(Box::new(task)));
-        }
-        if is_due && let Some(answer) = self.performer.evaluate(self.decider.running()) {
+        self.look_at_robots();
+        if is_due && let Some(answer) = self.team.evaluate(self.decider.running()) {
             self.observe(Observation::Evaluated(answer));
+        }
+    }
+
+    fn look_at_robots(&mut self) {
+        if let Some(task) = self.team.changed_task() {
+            self.observe(Observation::TaskChanged(Box::new(task)));
         }
     }
 
@@ -185,16 +202,13 @@ impl Adaptation {
                 number,
                 candidate,
             } => {
-                self.estimating = Some((decision, number));
                 let request = Request {
                     decision,
                     number,
                     candidate: &candidate,
                     running: self.decider.running(),
                 };
-                let answer = self.performer.estimate(request, lane);
-                self.estimating = None;
-                answer
+                self.team.estimate(request, lane)
             }
             Effect::Reconfigure {
                 decision,
@@ -207,10 +221,11 @@ impl Adaptation {
                     candidate: &candidate,
                     running: self.decider.running(),
                 };
-                self.performer.reconfigure(request, lane)
+                self.team.reconfigure(request, lane);
+                None
             }
             Effect::Abandon { .. } => {
-                self.performer.abandon(lane);
+                self.team.abandon(lane);
                 None
             }
             Effect::Decided(verdict) => {
@@ -222,6 +237,7 @@ impl Adaptation {
                 let event = Event::Adaptation(Box::new(record));
                 self.environment.events.record(now_ns, event);
                 self.answer_requests(&how);
+                self.team.tell_what_runs(self.decider.running(), Some(how));
                 None
             }
         }

@@ -1,7 +1,7 @@
-//! Which port gets its data from which, for any set of components in use: along each link of the
-//! task through those of its components that are used.
+//! Which component gets its data from which, for any set of components in use: along each link of the
+//! task through those of its components that are used, wherever they run.
 
-use system_model::task::ComponentIndex;
+use system_model::task::{ComponentIndex, Placement, TaskLink, TaskSpecification};
 
 /// A port of a component of the system, by its name: the number is the library's matter.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -13,54 +13,53 @@ pub struct PortKey {
 }
 
 /// One connection.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Hop {
-    /// The output.
-    pub from: PortKey,
-    /// The input.
-    pub to: PortKey,
+    /// Position in the task's links.
+    pub link: usize,
+    /// Whose output.
+    pub from: Placement,
+    /// Whose input.
+    pub to: Placement,
 }
 
-/// A link of the task between two components of this system.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Route {
-    /// Output of the first component.
-    pub from: PortKey,
-    /// Input of the last.
-    pub to: PortKey,
-    /// What may stand in between, in this order.
-    pub through: Vec<Stage>,
-    /// Size of a datum, in bytes.
-    pub size: usize,
-}
-
-/// A component that may stand in a link.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Stage {
-    /// Which component of the task.
-    pub component: ComponentIndex,
-    /// Where it takes the data of the link.
-    pub input: PortKey,
-    /// Where it gives them on.
-    pub output: PortKey,
+/// What robots that do a task together must agree upon, so that their numbers mean the same.
+pub fn description(task: &TaskSpecification) -> String {
+    let components = task.components.iter().map(|it| &it.name);
+    let links = task.links.iter().map(|it| (it.from, it.to, &it.through));
+    let robots = task.robots.iter().map(|robot| {
+        let instances = robot.instances.iter().map(|it| it.component);
+        (&robot.name, instances.collect::<Vec<_>>())
+    });
+    let resources = task.resources.iter().map(|it| &it.name);
+    format!(
+        "{:?}",
+        (
+            &task.name,
+            components.collect::<Vec<_>>(),
+            links.collect::<Vec<_>>(),
+            robots.collect::<Vec<_>>(),
+            resources.collect::<Vec<_>>(),
+        )
+    )
 }
 
 /// The connections of all links where these components are in use.
-pub fn hops(routes: &[Route], is_used: impl Fn(ComponentIndex) -> bool) -> Vec<Hop> {
+pub fn hops(links: &[TaskLink], placements: &[Placement]) -> Vec<Hop> {
+    let used = |component: ComponentIndex| {
+        let mut placements = placements.iter().copied();
+        placements.find(|it| it.component == component)
+    };
     let mut hops = Vec::new();
-    for route in routes {
-        let mut from = &route.from;
-        for stage in route.through.iter().filter(|it| is_used(it.component)) {
-            hops.push(Hop {
-                from: from.clone(),
-                to: stage.input.clone(),
-            });
-            from = &stage.output;
+    for (link, ends) in links.iter().enumerate() {
+        let (Some(mut from), Some(last)) = (used(ends.from), used(ends.to)) else {
+            continue;
+        };
+        let between = ends.through.iter().filter_map(|component| used(*component));
+        for to in between.chain([last]) {
+            hops.push(Hop { link, from, to });
+            from = to;
         }
-        hops.push(Hop {
-            from: from.clone(),
-            to: route.to.clone(),
-        });
     }
     hops
 }
@@ -68,21 +67,21 @@ pub fn hops(routes: &[Route], is_used: impl Fn(ComponentIndex) -> bool) -> Vec<H
 /// What of `wanted` is not there yet.
 pub fn added(wanted: &[Hop], present: &[Hop]) -> Vec<Hop> {
     let new = wanted.iter().filter(|hop| !present.contains(hop));
-    new.cloned().collect()
+    new.copied().collect()
 }
 
-/// Components that do not get the same data as before: those at the end of a new connection, and all
+/// Placements that do not get the same data as before: those at the end of a new connection, and all
 /// that get data from such.
-pub fn affected(wanted: &[Hop], present: &[Hop]) -> Vec<usize> {
+pub fn affected(wanted: &[Hop], present: &[Hop]) -> Vec<Placement> {
     let new = added(wanted, present);
-    let mut affected: Vec<usize> = new.iter().map(|hop| hop.to.component).collect();
+    let mut affected: Vec<Placement> = new.iter().map(|hop| hop.to).collect();
     let mut reached = 0;
     while reached < affected.len() {
         let source = affected[reached];
         reached += 1;
-        for hop in wanted.iter().filter(|hop| hop.from.component == source) {
-            if !affected.contains(&hop.to.component) {
-                affected.push(hop.to.component);
+        for hop in wanted.iter().filter(|hop| hop.from == source) {
+            if !affected.contains(&hop.to) {
+                affected.push(hop.to);
             }
         }
     }
@@ -93,36 +92,33 @@ pub fn affected(wanted: &[Hop], present: &[Hop]) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
+    use system_model::task::LinkPorts;
+
     use super::*;
 
-    fn key(component: usize, port: &str) -> PortKey {
-        PortKey {
-            component,
-            port: port.to_owned(),
-        }
+    /// A camera (0) to a tracker (1), through either of two filters (2 and 3); the tracker to a
+    /// motor (4).
+    fn links() -> [TaskLink; 2] {
+        let link = |from, to, through: &[ComponentIndex]| TaskLink {
+            from,
+            to,
+            through: through.to_vec(),
+            ports: LinkPorts::default(),
+        };
+        [link(0, 1, &[2, 3]), link(1, 4, &[])]
     }
 
-    /// A camera (0) to a tracker (1), through either of two filters (2 and 3), to a motor (4).
-    fn routes() -> [Route; 2] {
-        let stage = |component: usize| Stage {
-            component,
-            input: key(component, "in"),
-            output: key(component, "out"),
-        };
-        [
-            Route {
-                from: key(0, "out"),
-                to: key(1, "in"),
-                through: vec![stage(2), stage(3)],
-                size: 8,
-            },
-            Route {
-                from: key(1, "out"),
-                to: key(4, "in"),
-                through: Vec::new(),
-                size: 8,
-            },
-        ]
+    /// Camera, tracker and motor on robot 0, and filters on the robots that are given.
+    fn hops_with(filters: &[(ComponentIndex, usize)]) -> Vec<Hop> {
+        let own = [(0, 0), (1, 0), (4, 0)];
+        let placements = own.iter().chain(filters);
+        let placements: Vec<Placement> = placements
+            .map(|(component, robot)| Placement {
+                component: *component,
+                robot: *robot,
+            })
+            .collect();
+        hops(&links(), &placements)
     }
 
     fn in_words(hops: &[Hop]) -> Vec<(usize, usize)> {
@@ -136,27 +132,36 @@ mod tests {
     fn data_flow_through_those_that_are_used() {
         for (used, expected) in [
             (&[][..], &[(0, 1), (1, 4)][..]),
-            (&[2], &[(0, 2), (2, 1), (1, 4)]),
-            (&[3], &[(0, 3), (3, 1), (1, 4)]),
-            (&[2, 3], &[(0, 2), (2, 3), (3, 1), (1, 4)]),
+            (&[(2, 0)], &[(0, 2), (2, 1), (1, 4)]),
+            (&[(3, 1)], &[(0, 3), (3, 1), (1, 4)]),
+            (&[(2, 1), (3, 0)], &[(0, 2), (2, 3), (3, 1), (1, 4)]),
         ] {
-            let hops = hops(&routes(), |component| used.contains(&component));
-            assert_eq!(in_words(&hops), expected, "{used:?}");
+            assert_eq!(in_words(&hops_with(used)), expected, "{used:?}");
         }
+        assert!(hops(&links(), &[]).is_empty());
     }
 
     #[test]
     fn what_is_new_affects_all_behind_it() {
-        let of = |used: &[usize]| hops(&routes(), |component| used.contains(&component));
         for (present, wanted, new, expected) in [
-            (&[][..], &[2][..], &[(0, 2), (2, 1)][..], &[1, 2, 4][..]),
-            (&[2], &[3], &[(0, 3), (3, 1)], &[1, 3, 4]),
-            (&[2], &[], &[(0, 1)], &[1, 4]),
-            (&[2], &[2], &[], &[]),
+            (
+                &[][..],
+                &[(2, 0)][..],
+                &[(0, 2), (2, 1)][..],
+                &[1, 2, 4][..],
+            ),
+            (&[(2, 0)], &[(3, 0)], &[(0, 3), (3, 1)], &[1, 3, 4]),
+            (&[(2, 0)], &[], &[(0, 1)], &[1, 4]),
+            (&[(2, 0)], &[(2, 0)], &[], &[]),
+            // The same filter on another robot.
+            (&[(2, 0)], &[(2, 1)], &[(0, 2), (2, 1)], &[1, 2, 4]),
         ] {
-            let (present, wanted) = (of(present), of(wanted));
+            let (present, wanted) = (hops_with(present), hops_with(wanted));
             assert_eq!(in_words(&added(&wanted, &present)), new);
-            assert_eq!(affected(&wanted, &present), expected);
+            let affected = affected(&wanted, &present);
+            let mut affected: Vec<usize> = affected.iter().map(|it| it.component).collect();
+            affected.sort_unstable();
+            assert_eq!(affected, expected);
         }
     }
 }

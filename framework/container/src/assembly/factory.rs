@@ -117,7 +117,7 @@ impl Factory {
             }
             (None, None) => Instance::from(self.host(variant, status.is_standby())?),
         };
-        let services = Services::new(
+        let mut services = Services::new(
             Arc::from(specification.name.as_str()),
             status.incarnation(),
             Arc::clone(&self.environment),
@@ -125,6 +125,8 @@ impl Factory {
             description.ports.iter().map(unconnected).collect(),
             specification.properties.clone(),
         );
+        let world = self.environment.worlds.of_component(self.number as usize);
+        services.set_world(world.cloned());
         let period = match specification.execution.kind {
             ExecutionKind::Periodic | ExecutionKind::PeriodicShared => {
                 specification.execution.period

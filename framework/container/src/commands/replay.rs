@@ -124,7 +124,8 @@ fn replay(arguments: &ReplayArguments) -> Result<Replayed, Failed> {
         supervised: None,
         network: None,
     };
-    let system = System::start(vec![application], None, options).map_err(|it| refused(&it))?;
+    let system =
+        System::start(vec![application], Vec::new(), options).map_err(|it| refused(&it))?;
     let progress = text::Progress::new(&score);
     while system.wait(LOOK_PERIOD).is_none() {
         progress.refresh(&score);

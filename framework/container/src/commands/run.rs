@@ -13,6 +13,7 @@ mod report;
 mod supervised;
 mod tasks;
 mod words;
+mod worlds;
 
 use std::io::{self, IsTerminal as _, Write as _};
 use std::path::{Path, PathBuf};
@@ -23,10 +24,9 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use container::summary::Summary;
-use container::system::{Application, ClockKind, RunOptions, StateOptions, System};
+use container::system::{ClockKind, RunOptions, StateOptions, System};
 use crossbeam::channel::bounded;
-use robot_simulation::Simulation;
-use system_profile::{Problem, load_world};
+use system_profile::Problem;
 
 use super::{output, problems};
 use applications::Sources;
@@ -36,6 +36,7 @@ use live::Watcher;
 use observers::{ObserverArguments, listen};
 use recording::RecordingArguments;
 use supervised::SupervisionArguments;
+pub(super) use worlds::simulation;
 
 /// How often a person's view is refreshed: fast enough to look alive, slow enough to be read.
 const REFRESH_PERIOD: Duration = Duration::from_millis(100);
@@ -148,9 +149,9 @@ pub fn run(arguments: &RunArguments) -> ExitCode {
 fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
     let supervised = supervised::join(arguments)?;
     let applications = applications::load(&arguments.sources())?;
-    let simulation = match supervised.as_ref().and_then(|it| it.world()) {
-        Some(_elsewhere) => None,
-        None => simulate(&applications, arguments.seed)?,
+    let simulations = match supervised.as_ref().and_then(|it| it.world()) {
+        Some(_elsewhere) => Vec::new(),
+        None => worlds::simulate(&applications, arguments.seed)?,
     };
     let stop_asked = watch_signals()?;
     let (echo, lines) = bounded(ECHO_QUEUE);
@@ -175,7 +176,7 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         supervised: supervised.clone(),
         network: network::of(&arguments.sources(), arguments.clock)?,
     };
-    let started = System::start(applications, simulation, options);
+    let started = System::start(applications, simulations, options);
     let system = started.map_err(|error| refused(&error))?;
     let mut watcher = Watcher::new(system.name(), lines, arguments.format == Format::Json);
     let server = listen(&system, &watcher);
@@ -193,16 +194,14 @@ fn run_to_end(arguments: &RunArguments) -> Result<(), Failed> {
         supervised.stops();
     }
     drop((server, observers));
-    let world = system.world().cloned();
+    let environment = Arc::clone(system.supervisor().environment());
     let (summary, log_error) = system.stop(reason);
     watcher.finish();
     if let Some(error) = log_error {
         return Err(unwritable(arguments.events.as_deref(), &error));
     }
-    if let (Some(path), Some(world)) = (&arguments.picture, world) {
-        let picture = world.picture();
-        let picture = picture.map_err(|error| unwritable(Some(path), &error))?;
-        write(path, picture.as_bytes())?;
+    if let Some(path) = &arguments.picture {
+        worlds::draw_all(path, &environment.worlds)?;
     }
     conclude(arguments, &summary)?;
     let recording = summary.recording.as_ref();
@@ -240,30 +239,6 @@ pub(super) fn show(found: &[Problem]) {
             problems::render(found, errors_on_terminal())
         );
     }
-}
-
-fn simulate(applications: &[Application], seed: u64) -> Result<Option<Simulation>, Failed> {
-    let world = applications::world(applications)?;
-    world.map(|path| simulation(path, seed)).transpose()
-}
-
-/// The run of a world.
-pub(super) fn simulation(path: &Path, seed: u64) -> Result<Simulation, Failed> {
-    let outcome = load_world(path);
-    let Some(world) = outcome.world else {
-        return Err(Failed {
-            code: exit_code::PROFILE,
-            text: problems::render(&outcome.problems, errors_on_terminal()),
-        });
-    };
-    show(&outcome.problems);
-    Simulation::new(&world, seed).map_err(|error| Failed {
-        code: exit_code::PROFILE,
-        text: format!(
-            "{}: {error}\n  help: mend the world, or leave <world> out of the application",
-            path.display()
-        ),
-    })
 }
 
 /// The first signal asks for a stop in order, the second ends the process at once.

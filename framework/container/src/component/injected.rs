@@ -29,10 +29,10 @@ impl Component {
         if matches!(callback, Callback::Execute) {
             let cycle = self.status.cycles() + 1;
             let now = environment.clock.now();
-            let world = environment.world.as_deref();
-            let changed = environment
-                .injections
-                .begin_execution(component, cycle, now, world);
+            let changed =
+                environment
+                    .injections
+                    .begin_execution(component, cycle, now, &environment.worlds);
             environment.record_injections(&changed);
         }
         let (_, called) = CallbackName::ALL.iter().find(|(known, _)| *known == name)?;

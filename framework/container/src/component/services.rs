@@ -15,7 +15,6 @@ use system_model::fault::{Fault, FaultKind};
 use super::port_end::{Inbox, PortEnd};
 use crate::adaptation::AdaptationRequests;
 use crate::clock::Clock;
-use crate::device::Devices;
 use crate::event_log::EventLog;
 use crate::guard::{ForeignBytes, ForeignBytesMut, ForeignText, HostServices, Request};
 use crate::injection::Injections;
@@ -24,7 +23,7 @@ use crate::port::{Receiver, Sent};
 use crate::replay::Score;
 use crate::schedule::BusyTime;
 use crate::supervision::{Observations, Scenes};
-use crate::world::World;
+use crate::world::{World, Worlds};
 use fault_manager::DetectorId;
 
 /// What all components of an application share.
@@ -34,16 +33,14 @@ pub struct Environment {
     pub clock: Clock,
     /// The event log.
     pub events: EventLog,
-    /// Devices that can be opened.
-    pub devices: Devices,
     /// What waits for the fault manager.
     pub observations: Observations,
     /// Where components were when they were taken off.
     pub scenes: Scenes,
     /// Faults that are made on purpose.
     pub injections: Injections,
-    /// The simulated world, if there is one.
-    pub world: Option<Arc<World>>,
+    /// The simulated worlds, with the devices that can be opened there.
+    pub worlds: Worlds,
     /// The recording that is played instead of components, if one is.
     pub score: Option<Arc<Score>>,
     /// Components without which a task is to go on.
@@ -68,6 +65,8 @@ pub struct Detectors {
 /// The services of one component instance.
 pub struct Services {
     name: Arc<str>,
+    /// The simulated world in which it opens devices.
+    world: Option<Arc<World>>,
     incarnation: u32,
     environment: Arc<Environment>,
     /// Its ports, as its library describes them.
@@ -116,6 +115,7 @@ impl Services {
     ) -> Self {
         Self {
             name,
+            world: None,
             incarnation,
             environment,
             interface,

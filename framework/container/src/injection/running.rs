@@ -14,7 +14,7 @@ use system_model::injection::{
 use super::{Change, DistortionError, Passage, PortDistortion, Schedule, TooManyInjections};
 use crate::guard;
 use crate::port::Datum;
-use crate::world::World;
+use crate::world::Worlds;
 
 /// All injections, where each of them stands, and what they have done to the world.
 #[derive(Debug, Default)]
@@ -106,8 +106,8 @@ impl Injections {
     }
 
     /// It is `now`: what begins and what ends. Faults of the world are put into it and taken away.
-    pub fn advance(&self, now: Duration, world: Option<&World>) -> Vec<Changed> {
-        self.go_on(now, None, world)
+    pub fn advance(&self, now: Duration, worlds: &Worlds) -> Vec<Changed> {
+        self.go_on(now, None, worlds)
     }
 
     /// A component is about to begin its n-th `onExecute`, counted from 1 over all incarnations;
@@ -117,9 +117,9 @@ impl Injections {
         component: usize,
         cycle: u64,
         now: Duration,
-        world: Option<&World>,
+        worlds: &Worlds,
     ) -> Vec<Changed> {
-        self.go_on(now, Some((component, cycle)), world)
+        self.go_on(now, Some((component, cycle)), worlds)
     }
 
     /// What a component does in this call of a callback: what ends it, or else what lasts.
@@ -183,12 +183,7 @@ impl Injections {
                 .is_some_and(|mut inner| inner.schedule.fails(component, failure).is_some())
     }
 
-    fn go_on(
-        &self,
-        now: Duration,
-        cycle: Option<(usize, u64)>,
-        world: Option<&World>,
-    ) -> Vec<Changed> {
+    fn go_on(&self, now: Duration, cycle: Option<(usize, u64)>, worlds: &Worlds) -> Vec<Changed> {
         let Some(mut inner) = self.lock() else {
             return Vec::new();
         };
@@ -203,8 +198,8 @@ impl Injections {
                 continue;
             };
             let begins = change == Change::Begins;
-            if let InjectedFault::World(fault) = injection.what {
-                set(world, fault, begins);
+            if let InjectedFault::World { component, fault } = injection.what {
+                set(worlds, component, fault, begins);
             }
             for one in ports.iter_mut().filter(|one| one.number == number) {
                 one.distortion.restart();
@@ -248,7 +243,11 @@ pub enum InjectionError {
     Distortion(#[from] DistortionError),
 }
 
-fn set(world: Option<&World>, fault: WorldFault, present: bool) {
+fn set(worlds: &Worlds, component: Option<usize>, fault: WorldFault, present: bool) {
+    let world = match component {
+        Some(component) => worlds.of_component(component),
+        None => worlds.first(),
+    };
     let Some(world) = world else { return };
     let side = |side| match side {
         RobotSide::Left => Side::Left,

@@ -117,7 +117,10 @@ mod tests {
     #[test]
     fn what_lasts_for_ever_is_made_again_and_so_is_what_counts_cycles() {
         let sonar = Injection {
-            what: InjectedFault::World(WorldFault::UnplugSonar(1)),
+            what: InjectedFault::World {
+                component: None,
+                fault: WorldFault::UnplugSonar(1),
+            },
             ..injection(Trigger::At(seconds(1)), None, None)
         };
         let left = still_to_come(&sonar, seconds(10)).map(|left| left.trigger);

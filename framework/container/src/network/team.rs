@@ -9,8 +9,8 @@ use fault_manager::FaultState;
 use robot_network::message::{Beat, FaultNotice};
 use robot_network::{Change, Heard, Leadership, Membership, Node, Role};
 
-use super::Shared;
 use super::inputs::Listening;
+use super::{Shared, TeamView};
 use crate::event_log::Event;
 
 /// Beats within the limit of silence: one that is lost, or late by a busy machine, is no death.
@@ -18,7 +18,7 @@ const BEATS_IN_LIMIT: u32 = 5;
 
 /// What the thread holds.
 pub(super) struct Team {
-    node: Node,
+    node: Arc<Node>,
     inputs: Listening,
     verdicts: Channel<(u64, Event)>,
     shared: Arc<Shared>,
@@ -31,7 +31,7 @@ pub(super) struct Team {
 
 impl Team {
     pub(super) fn new(
-        node: Node,
+        node: Arc<Node>,
         inputs: Listening,
         verdicts: Channel<(u64, Event)>,
         shared: Arc<Shared>,
@@ -65,6 +65,7 @@ impl Team {
             let changes = self.membership.look(self.shared.now());
             self.follow(changes);
             self.look_who_decides();
+            self.show_team();
             self.tell_of_faults();
         }
     }
@@ -117,6 +118,7 @@ impl Team {
                 }
                 Change::Died { robot, death, .. } => {
                     self.inputs.died(&robot);
+                    self.shared.gates.died(&robot);
                     self.shared.record(&robot, "died", death.to_string());
                 }
                 Change::Namesake { incarnation } => {
@@ -135,6 +137,15 @@ impl Team {
             let role = self.leadership.look(&self.membership.alive());
             self.take_role(role);
         }
+    }
+
+    /// Tells the tasks that this robot does with others.
+    fn show_team(&self) {
+        let alive = self.membership.alive();
+        self.shared.set_team(TeamView {
+            decider: self.leadership.decider().map(str::to_owned),
+            alive: alive.into_iter().map(str::to_owned).collect(),
+        });
     }
 
     fn take_role(&mut self, role: Option<Role>) {

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use system_model::rules::SafeStateRule;
 
-use crate::device::Devices;
+use crate::device;
 
 /// The safe states of all actuators that have one.
 #[derive(Debug)]
@@ -97,7 +97,7 @@ impl SafeState {
     fn try_write(&mut self) -> Result<(), String> {
         let name = &self.rule.device;
         if self.device.is_none() {
-            let opened = Devices::default().open(name);
+            let opened = device::open(name, None);
             let opened = opened.map_err(|error| error.to_string())?;
             self.device = Some(opened.into_descriptor().into());
         }

@@ -21,7 +21,6 @@ use crate::lane::{Lane, Work};
 use crate::mission::{Calls, Runner};
 use crate::replay::Score;
 use crate::supervision::Supervisor;
-use crate::world::World;
 use playing::{Played, is_played};
 
 /// In simulated time a cycle of an executor without a period takes this long; without it two
@@ -60,7 +59,6 @@ pub struct Simulated {
     obeying: Option<usize>,
     environment: Arc<Environment>,
     supervisor: Arc<Supervisor>,
-    world: Option<Arc<World>>,
     end_ns: u64,
     /// Behaviour trees, and whether they have been told that all has been started.
     trees: Vec<Runner>,
@@ -72,13 +70,12 @@ pub struct Simulated {
 }
 
 impl Simulated {
-    /// Not begun. Ends at `end` of simulated time, or when the robot has reached its target.
+    /// Not begun. Ends at `end` of simulated time, or when every robot has reached its target.
     pub fn new(
         mut executors: Vec<Executor>,
         adaptations: Vec<Adaptation>,
         components: Arc<[Arc<ComponentCell>]>,
         supervisor: Arc<Supervisor>,
-        world: Option<Arc<World>>,
         end: Option<Duration>,
     ) -> Self {
         executors.sort_by(|a, b| (b.priority, &a.name).cmp(&(a.priority, &b.name)));
@@ -105,7 +102,6 @@ impl Simulated {
             calls: Arc::default(),
             environment,
             supervisor,
-            world,
             end_ns: end.map_or(u64::MAX, nanoseconds),
         }
     }
@@ -200,12 +196,11 @@ impl Simulated {
     /// Moves time to `time_ns`; false if the run ends before.
     fn advance(&self, time_ns: u64) -> bool {
         let time_ns = time_ns.min(self.end_ns);
-        if let Some(world) = &self.world
-            && world.advance_to(Duration::from_nanos(time_ns), &self.environment)
-        {
+        let environment = &self.environment;
+        if (environment.worlds).advance_to(Duration::from_nanos(time_ns), environment) {
             return false;
         }
-        self.environment.clock.advance_to(time_ns);
+        environment.clock.advance_to(time_ns);
         time_ns < self.end_ns
     }
 }

@@ -23,7 +23,6 @@ use crate::adaptation::AdaptationRequests;
 use crate::assembly::{Factory, Variant};
 use crate::clock::Clock;
 use crate::component::{Component, ComponentCell, Detectors, Environment};
-use crate::device::Devices;
 use crate::event_log::EventLog;
 use crate::executor::{Executor, Member};
 use crate::guard::{CodeRange, Misbehaviour};
@@ -34,6 +33,7 @@ use crate::library::{ComponentDescription, LoadedLibrary};
 use crate::schedule::BusyTime;
 use crate::status::ComponentStatus;
 use crate::supervision::{Observations, Scenes};
+use crate::world::Worlds;
 
 /// One that traps, one that does not; each takes its own way through the guard.
 const FAULTS: [Misbehaviour; 2] = [Misbehaviour::Segfault, Misbehaviour::Panic];
@@ -177,11 +177,10 @@ fn environment() -> Environment {
     Environment {
         clock: Clock::real(),
         events: EventLog::nowhere(),
-        devices: Devices::default(),
         observations: Observations::default(),
         scenes: Scenes::default(),
         injections: Injections::default(),
-        world: None,
+        worlds: Worlds::default(),
         score: None,
         adaptation_requests: AdaptationRequests::default(),
         busy: BusyTime::default(),

@@ -186,22 +186,21 @@ mod tests {
     use crate::adaptation::AdaptationRequests;
     use crate::clock::Clock;
     use crate::component::Environment;
-    use crate::device::Devices;
     use crate::event_log::EventLog;
     use crate::injection::Injections;
     use crate::schedule::BusyTime;
     use crate::supervision::{Emergency, Monitors, Observations, Scenes};
+    use crate::world::Worlds;
 
     fn supervisor() -> Supervisor {
         let (events, _writer) = EventLog::open(None, false, None).unwrap();
         let environment = Environment {
             clock: Clock::real(),
             events,
-            devices: Devices::default(),
             observations: Observations::default(),
             scenes: Scenes::default(),
             injections: Injections::default(),
-            world: None,
+            worlds: Worlds::default(),
             score: None,
             adaptation_requests: AdaptationRequests::default(),
             busy: BusyTime::default(),

@@ -119,9 +119,7 @@ impl Supervisor {
         }
         self.injected_ns.store(now_ns, Ordering::Relaxed);
         let now = Duration::from_nanos(now_ns);
-        let changed = environment
-            .injections
-            .advance(now, environment.world.as_deref());
+        let changed = environment.injections.advance(now, &environment.worlds);
         environment.record_injections(&changed);
     }
 }

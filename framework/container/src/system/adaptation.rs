@@ -2,15 +2,17 @@
 
 use std::sync::Arc;
 
-use system_model::task::Placement;
 use task_adaptation::Decider;
 
 use super::applications::{Applications, Part};
 use super::{StartError, System};
-use crate::adaptation::{Adaptation, AdaptationLane, Binding, Known, LocalRobot};
+use crate::adaptation::{
+    Adaptation, AdaptationLane, AttachedTask, Binding, Known, LocalRobot, Passage, Team,
+};
 use crate::assembly::{Assembly, AssemblyProblem};
 use crate::component::Environment;
 use crate::lane::Lane;
+use crate::network::Network;
 use crate::status::Meter;
 
 /// Components that have a rung for a task in which they take no part.
@@ -22,8 +24,7 @@ fn strangers<'part>(
         let rule = part.rules.components.get(component)?.adapt.as_ref()?;
         Some((component, rule))
     });
-    let strangers =
-        components.filter(|(component, _)| binding.task_component(*component).is_none());
+    let strangers = components.filter(|(component, _)| binding.part_of(*component).is_none());
     strangers.map(|(_, rule)| AssemblyProblem::Connection {
         place: rule.place.clone(),
         message: format!(
@@ -34,6 +35,52 @@ fn strangers<'part>(
     })
 }
 
+/// Applications that have a task, together those that are robots of the same one.
+fn groups(applications: &Applications) -> Vec<Vec<(&Part, &AttachedTask)>> {
+    let mut groups: Vec<Vec<(&Part, &AttachedTask)>> = Vec::new();
+    for part in &applications.parts {
+        let Some(attached) = &part.application.task else {
+            continue;
+        };
+        let is_same = |group: &&mut Vec<(&Part, &AttachedTask)>| {
+            let mut group = group.iter();
+            group.all(|(_, other)| other.task == attached.task && other.robot != attached.robot)
+        };
+        match groups.iter_mut().find(is_same) {
+            Some(group) => group.push((part, attached)),
+            None => groups.push(vec![(part, attached)]),
+        }
+    }
+    groups
+}
+
+/// The way to other robots of a task, if its application is in the network.
+fn passage(
+    group: &[(&Part, &AttachedTask)],
+    binding: &Binding,
+    network: Option<&Network>,
+) -> Result<Option<Box<dyn Passage>>, StartError> {
+    let Some(network) = network else {
+        return Ok(None);
+    };
+    let (robot, members) = network.robot();
+    let in_it = group.iter().find(|(part, _)| part.members.start == members);
+    let Some((_, attached)) = in_it else {
+        return Ok(None);
+    };
+    let name = &binding.task.robots[attached.robot].name;
+    if name != robot {
+        return Err(StartError::Assembly(vec![AssemblyProblem::Connection {
+            place: attached.place.clone(),
+            message: format!("the network calls this robot '{robot}', the task '{name}'"),
+            help: "give it one name: in <network name=\"…\"> and in <adapt robot=\"…\"/>"
+                .to_owned(),
+        }]));
+    }
+    let passage = network.passage(&binding.task);
+    passage.map(Some).map_err(StartError::Network)
+}
+
 /// An adaptation for each task. A recording that is played changes nothing.
 ///
 /// # Errors
@@ -41,35 +88,35 @@ fn strangers<'part>(
 pub(super) fn adapt(
     applications: &Applications,
     assembly: &Assembly,
-    environment: &Arc<Environment>,
-    meter: &Arc<Meter>,
+    (environment, meter, network): (&Arc<Environment>, &Arc<Meter>, Option<&Network>),
 ) -> Result<Vec<Adaptation>, StartError> {
     let (mut adaptations, mut problems) = (Vec::new(), Vec::new());
     if environment.score.is_some() {
         return Ok(adaptations);
     }
-    for part in &applications.parts {
-        let Some(attached) = &part.application.task else {
-            continue;
-        };
-        let known = Known {
-            specification: &applications.specification,
-            members: part.members.clone(),
-            interfaces: &assembly.interfaces,
-        };
-        match Binding::new(attached, &known) {
+    for group in groups(applications) {
+        let attached = group.iter().map(|(part, attached)| {
+            let known = Known {
+                specification: &applications.specification,
+                members: part.members.clone(),
+                interfaces: &assembly.interfaces,
+            };
+            (*attached, known)
+        });
+        match Binding::new(&attached.collect::<Vec<_>>()) {
             Ok(binding) => {
-                let running = attached.task.running.clone();
-                let running: Vec<Placement> = running.unwrap_or_default();
-                let decider = Decider::new(attached.task.clone(), running);
-                problems.extend(strangers(part, &binding));
-                let members = part.members.clone();
-                let watched = members.filter(|it| binding.task_component(*it).is_some());
+                let running = binding.task.running.clone().unwrap_or_default();
+                let decider = Decider::new(binding.task.clone(), running);
+                let parts = group.iter().map(|(part, _)| *part);
+                problems.extend(parts.flat_map(|part| strangers(part, &binding)));
+                let watched = binding.parts.iter().map(|it| it.component);
                 environment.adaptation_requests.watch(watched);
                 let environment = Arc::clone(environment);
                 let meter = Arc::clone(meter);
-                let robot = LocalRobot::new(binding, assembly, Arc::clone(&environment), meter);
-                adaptations.push(Adaptation::new(decider, Box::new(robot), environment));
+                let passage = passage(&group, &binding, network)?;
+                let robot =
+                    LocalRobot::new(binding, assembly, Arc::clone(&environment), meter, passage);
+                adaptations.push(Adaptation::new(decider, Team::new(robot), environment));
             }
             Err(found) => problems.extend(found),
         }

@@ -83,6 +83,11 @@ pub(super) struct Agenda {
 /// Components that are left behind, by their number.
 pub(super) type LeftBehind = Arc<[AtomicBool]>;
 
+/// None of so many components has been left behind.
+pub(super) fn nobody(components: usize) -> LeftBehind {
+    (0..components).map(|_| AtomicBool::new(false)).collect()
+}
+
 /// How far an agenda is, for the thread that waits.
 #[derive(Clone)]
 pub(super) struct Progress {

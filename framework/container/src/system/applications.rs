@@ -7,6 +7,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::adaptation::AttachedTask;
+use crate::world::Drives;
 use behavior_tree::Plan;
 use system_model::injection::Injection;
 use system_model::process_model::ProcessModel;
@@ -65,7 +66,7 @@ impl Part {
 }
 
 impl Applications {
-    /// Puts applications together. Their names differ, and at most one world is among them.
+    /// Puts applications together. Their names differ.
     pub(super) fn new(applications: Vec<Application>) -> Self {
         let several = applications.len() > 1;
         let mut all = Self {
@@ -97,6 +98,18 @@ impl Applications {
             (name, part.members.clone())
         };
         parts.map(named).collect()
+    }
+
+    /// What each has of a world.
+    pub(super) fn drives(&self) -> Vec<Drives<'_>> {
+        let parts = self.parts.iter();
+        let with_specification = parts.map(|part| (part, &part.application.specification));
+        let drives = with_specification.map(|(part, specification)| Drives {
+            application: &specification.name,
+            first: part.members.start,
+            file: specification.world.as_deref(),
+        });
+        drives.collect()
     }
 
     fn add(&mut self, application: Application) {

@@ -7,7 +7,7 @@ use super::System;
 use crate::control::RunningSystem;
 use crate::status::ComponentStatus;
 use crate::supervision::Supervisor;
-use crate::world::World;
+use crate::world::Worlds;
 
 impl System {
     /// The name of the application; of several, all of them with `+` in between.
@@ -46,9 +46,9 @@ impl System {
         }
     }
 
-    /// The world, if there is one.
-    pub fn world(&self) -> Option<&Arc<World>> {
-        self.world.as_ref()
+    /// The simulated worlds.
+    pub fn worlds(&self) -> &Worlds {
+        &self.environment.worlds
     }
 
     pub(super) fn restarts(&self) -> u32 {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crossbeam::channel::Sender;
+use robot_simulation::Simulation;
 use system_model::injection::Injection;
 use system_model::network::NetworkSpecification;
 
@@ -13,7 +14,6 @@ use crate::adaptation::AdaptationRequests;
 use crate::assembly::LibraryOptions;
 use crate::clock::Clock;
 use crate::component::Environment;
-use crate::device::Devices;
 use crate::event_log::{Event, EventLog, EventWriter};
 use crate::injection::{Injections, still_to_come};
 use crate::outer_supervision::Supervised;
@@ -21,7 +21,7 @@ use crate::recording::{Recorder, RecordingOptions};
 use crate::replay::Score;
 use crate::schedule::BusyTime;
 use crate::supervision::{Observations, Scenes};
-use crate::world::World;
+use crate::world::{Drives, World, Worlds};
 
 /// Which clock an application runs by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,12 +88,21 @@ impl RunOptions {
         all.iter().filter_map(to_come).collect()
     }
 
-    /// What the components share.
-    pub(super) fn environment(
+    /// The worlds of a run: in the process that outlives this one, if that has one, else here.
+    pub(super) fn worlds(
         &self,
-        events: EventLog,
-        world: Option<Arc<World>>,
-    ) -> Arc<Environment> {
+        applications: &[Drives<'_>],
+        simulations: Vec<Simulation>,
+    ) -> Worlds {
+        let real = self.clock == ClockKind::Real;
+        let outside = self.supervised.as_ref().and_then(|it| it.world());
+        let inside = simulations.into_iter();
+        let inside = inside.map(|it| Arc::new(World::new(it, real)));
+        Worlds::new(applications, outside.cloned().into_iter().chain(inside))
+    }
+
+    /// What the components share.
+    pub(super) fn environment(&self, events: EventLog, worlds: Worlds) -> Arc<Environment> {
         // How long the run has lasted when this container comes into it.
         let run_time = self.supervised.as_ref().map(|it| it.run_time());
         Arc::new(Environment {
@@ -102,11 +111,10 @@ impl RunOptions {
                 ClockKind::Simulated => Clock::simulated(),
             },
             events,
-            devices: Devices::new(world.clone()),
             observations: Observations::default(),
             injections: Injections::default(),
             scenes: Scenes::default(),
-            world,
+            worlds,
             score: self.score.clone(),
             adaptation_requests: AdaptationRequests::default(),
             busy: BusyTime::default(),

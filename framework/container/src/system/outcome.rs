@@ -7,10 +7,7 @@ use crate::summary::{ApplicationSummary, ComponentSummary, Summary, application_
 
 impl System {
     pub(super) fn is_over(&self) -> bool {
-        let reached = self
-            .world
-            .as_ref()
-            .is_some_and(|world| world.has_reached_target());
+        let reached = self.environment.worlds.have_reached_targets();
         let elapsed = self
             .options
             .duration
@@ -19,11 +16,7 @@ impl System {
     }
 
     pub(super) fn reason(&self) -> &'static str {
-        let reached = self
-            .world
-            .as_ref()
-            .is_some_and(|world| world.has_reached_target());
-        if reached {
+        if self.environment.worlds.have_reached_targets() {
             "target_reached"
         } else {
             "duration_elapsed"
@@ -40,6 +33,8 @@ impl System {
             events_lost: self.environment.events.lost(),
         };
         let applications = self.applications.iter();
+        let worlds = &self.environment.worlds;
+        let several = worlds.are_several().then_some(worlds);
         Summary {
             applications: applications
                 .map(|(name, members)| (name.clone(), application(members)))
@@ -50,7 +45,10 @@ impl System {
                 .map(|status| (status.name.clone(), ComponentSummary::of(status)))
                 .collect(),
             restarts: self.restarts(),
-            robot: self.world.as_ref().map(|world| world.summary()),
+            robot: worlds.first().map(|world| world.summary()),
+            robots: several
+                .map(|it| it.summaries().collect())
+                .unwrap_or_default(),
             adaptation: self.environment.adaptation_requests.summary(),
             recording: None,
         }

@@ -10,28 +10,30 @@ use crate::event_log::Event;
 use crate::executor::Executor;
 use crate::scheduling;
 use crate::status::{ComponentStatus, Meter};
-use crate::world::World;
 
-/// Moves the world along with the machine's clock.
+/// Moves the worlds along with the machine's clock.
 pub(super) struct WorldThread {
     stopping: Arc<AtomicBool>,
     thread: JoinHandle<()>,
 }
 
 impl WorldThread {
-    pub(super) fn start(world: Arc<World>, environment: Arc<Environment>) -> io::Result<Self> {
+    /// None without a world.
+    pub(super) fn start(environment: Arc<Environment>) -> io::Result<Option<Self>> {
         let stopping = Arc::new(AtomicBool::new(false));
         let asked = Arc::clone(&stopping);
-        let period = world.step_period();
+        let Some(period) = environment.worlds.step_period() else {
+            return Ok(None);
+        };
         let thread = std::thread::Builder::new()
             .name("world".to_owned())
             .spawn(move || {
                 while !asked.load(Ordering::Acquire) {
-                    world.advance_to(environment.clock.now(), &environment);
+                    (environment.worlds).advance_to(environment.clock.now(), &environment);
                     std::thread::sleep(period);
                 }
             })?;
-        Ok(Self { stopping, thread })
+        Ok(Some(Self { stopping, thread }))
     }
 
     pub(super) fn stop(self) {

@@ -106,8 +106,8 @@ impl System {
     fn begin_injections(&self) {
         let environment = &self.environment;
         if environment.injections.is_armed() {
-            let world = environment.world.as_deref();
-            let begun = environment.injections.advance(self.now(), world);
+            let worlds = &environment.worlds;
+            let begun = environment.injections.advance(self.now(), worlds);
             environment.record_injections(&begun);
         }
     }
@@ -201,7 +201,6 @@ impl System {
                     adaptations,
                     Arc::clone(&self.components),
                     Arc::clone(&self.supervisor),
-                    self.world.clone(),
                     self.options.duration,
                 )
                 .with_trees(runners, Arc::clone(&self.calls));
@@ -225,11 +224,7 @@ impl System {
                 if above.is_some() {
                     self.lock_memory();
                 }
-                if let Some(world) = &self.world {
-                    let thread =
-                        WorldThread::start(Arc::clone(world), Arc::clone(&self.environment))?;
-                    self.world_thread = Some(thread);
-                }
+                self.world_thread = WorldThread::start(Arc::clone(&self.environment))?;
                 for executor in executors {
                     self.launch_executor(executor)?;
                 }

@@ -26,6 +26,23 @@ pub(super) fn question(kind: &str, robot: &str) -> String {
     format!("steadfast/{kind}/{robot}")
 }
 
+/// Of what one robot tells another about tasks.
+pub(super) fn task(from: &str, to: &str) -> String {
+    format!("steadfast/task/{from}/{to}")
+}
+
+/// Of data that go from one robot to another on a link of a task.
+pub(super) fn flow(from: &str, to: &str, name: &str) -> String {
+    format!("steadfast/flow/{from}/{to}/{name}")
+}
+
+/// By whom data come, and on which link.
+pub(super) fn flow_of(key: &str) -> Option<(&str, &str)> {
+    let mut parts = key.splitn(5, '/').skip(2);
+    let (from, _to, name) = (parts.next()?, parts.next()?, parts.next()?);
+    Some((from, name))
+}
+
 /// Whose key this is.
 pub(super) fn robot(key: &str) -> Option<&str> {
     key.split('/').nth(2)
@@ -44,7 +61,10 @@ mod tests {
     #[test]
     fn what_is_written_into_a_key_is_read_from_it() {
         assert_eq!(life(&alive("R1", 7)), Some(("R1", 7)));
-        for key in [beat("R1"), fault("R1"), port("R1", "camera", "image")] {
+        assert_eq!(flow_of(&flow("R1", "R2", "a/0/1")), Some(("R1", "a/0/1")));
+        assert_eq!(flow_of("steadfast/flow/R1/R2"), None);
+        let task = task("R1", "R2");
+        for key in [beat("R1"), fault("R1"), port("R1", "camera", "image"), task] {
             assert_eq!(robot(&key), Some("R1"), "{key}");
         }
         for key in [

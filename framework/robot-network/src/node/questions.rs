@@ -7,19 +7,14 @@ use zenoh::Wait;
 use zenoh::query::{ConsolidationMode, Queryable};
 
 use super::{Node, NodeError, key, refused};
-use crate::message::{self, Database, Estimate, EstimateRequest};
+use crate::message::{self, Database};
 use crate::package;
 
 /// What a robot answers when it is asked, on threads of the network's. A robot that says nothing of
-/// estimates and packages has none to give.
+/// packages has none to give.
 pub trait Answers: Send + Sync + 'static {
     /// What it has.
     fn database(&self) -> Database;
-
-    /// What a component would do for a task; none if there is no such component or no estimate.
-    fn estimate(&self, _request: &EstimateRequest) -> Option<Estimate> {
-        None
-    }
 
     /// The sealed package of a component; none if it is not given away.
     fn package(&self, _component: &str) -> Option<Vec<u8>> {
@@ -39,27 +34,6 @@ impl Node {
         let mut databases: Vec<Database> = answers.filter_map(read).collect();
         databases.sort_by(|one, other| one.robot.cmp(&other.robot));
         Ok(databases)
-    }
-
-    /// Another robot's estimate of a component.
-    ///
-    /// # Errors
-    /// When there is none within `limit`, or it lies: negative, infinite, no number.
-    pub fn estimate(
-        &self,
-        robot: &str,
-        request: &EstimateRequest,
-        limit: Duration,
-    ) -> Result<Estimate, NodeError> {
-        let key = key::question("estimate", robot);
-        let request = message::encode(request).map_err(refused(&key))?;
-        let bytes = self.first_answer(&key, request, limit)?;
-        let understood = message::decode::<Estimate>(&bytes);
-        let checked = understood.and_then(|estimate| estimate.check().map(|()| estimate));
-        checked.map_err(|error| NodeError::Answer {
-            what: key,
-            reason: error.to_string(),
-        })
     }
 
     /// The package of a component of another robot, as it came: it is still to be opened.
@@ -130,21 +104,12 @@ pub(super) fn answer(
     answers: impl Answers,
 ) -> Result<Vec<Queryable<()>>, NodeError> {
     let answers = Arc::new(answers);
-    let (for_database, for_estimate, for_package) =
-        (Arc::clone(&answers), Arc::clone(&answers), answers);
+    let (for_database, for_package) = (Arc::clone(&answers), answers);
     Ok(vec![
         queryable(
             session,
             &key::question("database", robot),
             move |_question| message::encode(&for_database.database()).ok(),
-        )?,
-        queryable(
-            session,
-            &key::question("estimate", robot),
-            move |question| {
-                let request = message::decode(question).ok()?;
-                message::encode(&for_estimate.estimate(&request)?).ok()
-            },
         )?,
         queryable(session, &key::question("package", robot), move |question| {
             for_package.package(std::str::from_utf8(question).ok()?)

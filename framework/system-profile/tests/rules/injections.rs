@@ -142,7 +142,7 @@ fn faults_of_ports() {
 
 #[test]
 fn faults_of_the_world_and_of_the_container() {
-    use InjectedFault::World;
+    let world = |component, fault| InjectedFault::World { component, fault };
     let container = |failure| InjectedFault::Container {
         component: AVOIDANCE,
         failure,
@@ -150,27 +150,27 @@ fn faults_of_the_world_and_of_the_container() {
     for (attributes, expected) in [
         (
             "fault='unplug_sonar' index='3'",
-            World(WorldFault::UnplugSonar(3)),
+            world(None, WorldFault::UnplugSonar(3)),
         ),
         (
             "fault='unplug_sonar' component='front'",
-            World(WorldFault::UnplugSonar(2)),
+            world(Some(FRONT), WorldFault::UnplugSonar(2)),
         ),
         (
             "fault='unplug_sonar' component='front' index='1'",
-            World(WorldFault::UnplugSonar(1)),
+            world(Some(FRONT), WorldFault::UnplugSonar(1)),
         ),
         (
             "fault='motor_driver_off' side='left'",
-            World(WorldFault::MotorDriverOff(RobotSide::Left)),
+            world(None, WorldFault::MotorDriverOff(RobotSide::Left)),
         ),
         (
             "fault='encoder_dead' side='right'",
-            World(WorldFault::EncoderDead(RobotSide::Right)),
+            world(None, WorldFault::EncoderDead(RobotSide::Right)),
         ),
         (
             "fault='camera_smoke' density='0.8'",
-            World(WorldFault::CameraSmoke(0.8)),
+            world(None, WorldFault::CameraSmoke(0.8)),
         ),
         (
             "fault='library_missing' component='avoidance'",

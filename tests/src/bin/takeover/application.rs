@@ -70,7 +70,7 @@ pub fn run(plan: &Plan) -> Outcome {
         supervised: None,
         network: None,
     };
-    let system = System::start(vec![application], None, options).expect("it starts");
+    let system = System::start(vec![application], Vec::new(), options).expect("it starts");
     allocations::look_at(thread_named("source"));
     let takeovers = watch(&system, plan.faults);
     let (_summary, _no_file) = system.stop("enough");

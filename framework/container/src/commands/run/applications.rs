@@ -80,28 +80,6 @@ pub(in crate::commands) fn read(
     Ok((applications, reading.problems))
 }
 
-/// The world that the applications drive in, if any; a robot is in one place.
-pub(super) fn world(applications: &[Application]) -> Result<Option<&Path>, Failed> {
-    let specifications = applications.iter().map(|it| &it.specification);
-    let mut worlds = specifications.filter_map(|it| Some((it.name.as_str(), it.world.as_deref()?)));
-    let Some((name, world)) = worlds.next() else {
-        return Ok(None);
-    };
-    let identity = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    match worlds.find(|(_, other)| identity(other) != identity(world)) {
-        None => Ok(Some(world)),
-        Some((other_name, other)) => Err(Failed {
-            code: exit_code::PROFILE,
-            text: format!(
-                "'{name}' drives in {}, '{other_name}' in {}\n  help: applications of one \
-                 container share one world; let both name it, or only one of them",
-                world.display(),
-                other.display()
-            ),
-        }),
-    }
-}
-
 fn not_started(files: &[PathBuf], found: &[Problem]) -> Failed {
     let names: Vec<String> = files
         .iter()

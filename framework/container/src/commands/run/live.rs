@@ -9,6 +9,7 @@ use container::status::ComponentStatus;
 use container::system::System;
 use crossbeam::channel::Receiver;
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
+use robot_simulation::RobotSummary;
 
 use super::on_terminal;
 use super::words::describe;
@@ -21,10 +22,10 @@ pub(super) struct Watcher {
     aside: bool,
 }
 
-/// One line for the robot, one for each component.
+/// A line for the robot of each world, one for each component.
 struct Table {
     lines: MultiProgress,
-    robot: ProgressBar,
+    robots: Vec<ProgressBar>,
     components: Vec<ProgressBar>,
     application: String,
     /// When cycles were last counted, and how many there were.
@@ -87,10 +88,9 @@ impl Watcher {
 impl Table {
     fn new(application: &str) -> Self {
         let lines = MultiProgress::new();
-        let robot = lines.add(line());
         Self {
             lines,
-            robot,
+            robots: Vec::new(),
             components: Vec::new(),
             application: application.to_owned(),
             counted: None,
@@ -100,18 +100,16 @@ impl Table {
 
     fn refresh(&mut self, system: &System) {
         let time_s = system.now().as_secs_f64();
-        let robot = system.world().map(|world| world.summary());
-        self.robot.set_message(match robot {
-            Some(robot) => format!(
-                "{} {time_s:8.2} s   target {:5.2} m away   path {:5.2} m   collisions {}   clearance {:4.2} m",
-                self.application,
-                robot.distance_to_target_m,
-                robot.path_length_m,
-                robot.collisions,
-                robot.least_clearance_m
-            ),
-            None => format!("{} {time_s:8.2} s", self.application),
-        });
+        let mut robots = robot_lines(system, &self.application, time_s);
+        if robots.is_empty() {
+            robots.push(format!("{} {time_s:8.2} s", self.application));
+        }
+        while self.robots.len() < robots.len() {
+            self.robots.push(self.lines.add(line()));
+        }
+        for (bar, text) in self.robots.iter().zip(robots) {
+            bar.set_message(text);
+        }
         let statuses = system.statuses();
         while self.components.len() < statuses.len() {
             self.components.push(self.lines.add(line()));
@@ -137,6 +135,24 @@ impl Table {
             self.counted = Some((now, cycles));
         }
     }
+}
+
+fn robot_lines(system: &System, all: &str, time_s: f64) -> Vec<String> {
+    let worlds = system.worlds();
+    let line = |(name, robot): (String, RobotSummary)| {
+        let name = match worlds.are_several() {
+            true => &name,
+            false => all,
+        };
+        format!(
+            "{name} {time_s:8.2} s   target {:5.2} m away   path {:5.2} m   collisions {}   clearance {:4.2} m",
+            robot.distance_to_target_m,
+            robot.path_length_m,
+            robot.collisions,
+            robot.least_clearance_m
+        )
+    };
+    worlds.summaries().map(line).collect()
 }
 
 fn component_line(status: &ComponentStatus, rate_hz: Option<f64>) -> String {

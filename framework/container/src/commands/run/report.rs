@@ -5,6 +5,7 @@ use std::path::Path;
 
 use container::recording::RecordingSummary;
 use container::summary::Summary;
+use robot_simulation::RobotSummary;
 
 /// Prints the summary.
 pub(super) fn print(
@@ -23,20 +24,13 @@ pub(super) fn print(
             application.ended_by.replace('_', " ")
         )?;
     }
-    if let Some(robot) = &summary.robot {
-        match robot.time_s {
-            Some(time_s) => writeln!(output, "  robot: reached its target after {time_s:.2} s")?,
-            None => writeln!(
-                output,
-                "  robot: has not reached its target, {:.2} m to go",
-                robot.distance_to_target_m
-            )?,
-        }
-        writeln!(
-            output,
-            "  path {:.2} m, collisions {}, least clearance {:.2} m",
-            robot.path_length_m, robot.collisions, robot.least_clearance_m
-        )?;
+    match summary.robots.is_empty() {
+        true => summary
+            .robot
+            .iter()
+            .try_for_each(|it| drive(output, "robot", it))?,
+        false => (summary.robots.iter())
+            .try_for_each(|(name, it)| drive(output, &format!("robot of {name}"), it))?,
     }
     if let Some(adaptation) = &summary.adaptation {
         writeln!(
@@ -53,6 +47,22 @@ pub(super) fn print(
         writeln!(output, "  picture of the drive: {}", picture.display())?;
     }
     output.flush()
+}
+
+fn drive(output: &mut impl Write, whose: &str, robot: &RobotSummary) -> io::Result<()> {
+    match robot.time_s {
+        Some(time_s) => writeln!(output, "  {whose}: reached its target after {time_s:.2} s")?,
+        None => writeln!(
+            output,
+            "  {whose}: has not reached its target, {:.2} m to go",
+            robot.distance_to_target_m
+        )?,
+    }
+    writeln!(
+        output,
+        "  path {:.2} m, collisions {}, least clearance {:.2} m",
+        robot.path_length_m, robot.collisions, robot.least_clearance_m
+    )
 }
 
 fn components(output: &mut impl Write, summary: &Summary) -> io::Result<()> {

@@ -12,7 +12,7 @@ use container::outer_supervision::{
 };
 use container::system::Application;
 
-use super::{ClockArgument, Failed, RunArguments, applications, duration, exit_code};
+use super::{ClockArgument, Failed, RunArguments, applications, duration, exit_code, worlds};
 
 /// The option that makes a parent.
 const SUPERVISED: &str = "--supervised";
@@ -60,14 +60,14 @@ pub(super) fn run(arguments: &RunArguments) -> Result<u8, Failed> {
     }
     // What is wrong with these is said here; warnings are for the container to say.
     let (applications, _warnings) = applications::read(&arguments.sources())?;
-    let world = applications::world(&applications)?;
+    let world = only_world(&applications)?;
     let executable = std::env::current_exe().map_err(SuperviseError::from);
     let options = &arguments.supervision;
     let plan = executable.map(|executable| Plan {
         executable,
         arguments: container_arguments(std::env::args_os()),
         world: world.map(|file| PlannedWorld {
-            file: file.to_owned(),
+            file,
             seed: arguments.seed,
         }),
         restarts: options.restarts,
@@ -82,6 +82,23 @@ pub(super) fn run(arguments: &RunArguments) -> Result<u8, Failed> {
             _ => exit_code::SYSTEM,
         },
         text: error.to_string(),
+    })
+}
+
+/// The world of a supervised run, if there is one: the process that outlives containers is one.
+fn only_world(applications: &[Application]) -> Result<Option<PathBuf>, Failed> {
+    let files = worlds::files(applications);
+    let Some(other) = files.get(1) else {
+        return Ok(files.into_iter().next());
+    };
+    Err(Failed {
+        code: exit_code::PROFILE,
+        text: format!(
+            "the applications drive in {} and in {}: --supervised keeps one world alive\n  help: let \
+             them name the same world, or run each application in a supervised container of its own",
+            files[0].display(),
+            other.display()
+        ),
     })
 }
 

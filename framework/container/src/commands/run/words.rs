@@ -72,10 +72,23 @@ pub(super) fn describe(event: &Event) -> Option<String> {
         Event::ContainerRestarted(restart) => restarted(restart),
         Event::ContainerGivenUp { seen, .. } => format!("the container is given up: {seen}"),
         Event::Robot { .. } => of_robot(event),
-        Event::TargetReached { time_s } => {
-            format!("the robot has reached its target ({time_s:.2} s)")
-        }
+        Event::TargetReached { .. } => reached(event),
     })
+}
+
+/// A robot is where it was to go.
+fn reached(event: &Event) -> String {
+    match event {
+        Event::TargetReached {
+            application,
+            time_s,
+        } => {
+            let whose = application.iter().map(|it| format!(" of {it}"));
+            let whose: String = whose.collect();
+            format!("the robot{whose} has reached its target ({time_s:.2} s)")
+        }
+        _ => String::new(),
+    }
 }
 
 /// What has changed among robots.

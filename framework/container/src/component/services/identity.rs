@@ -11,6 +11,7 @@ use crate::event_log::Event;
 use crate::guard::{ForeignBytes, ForeignBytesMut};
 use crate::injection::Changed;
 use crate::library::PortDescription;
+use crate::world::World;
 
 impl Environment {
     /// Puts injected faults on record that have begun or ended.
@@ -40,6 +41,11 @@ impl Services {
     /// What all components of the application share.
     pub fn environment(&self) -> &Arc<Environment> {
         &self.environment
+    }
+
+    /// From now on it opens simulated devices in this world.
+    pub fn set_world(&mut self, world: Option<Arc<World>>) {
+        self.world = world;
     }
 
     /// The detectors that the fault manager has for the component.

@@ -5,6 +5,7 @@ use fault_manager::{DetectorId, Evidence, Observation, Symptom};
 use system_model::fault::{Fault, FaultKind};
 
 use super::Services;
+use crate::device;
 use crate::event_log::Event;
 use crate::guard::{ForeignBytesMut, ForeignText};
 
@@ -142,7 +143,7 @@ impl Services {
         descriptor: ForeignBytesMut,
     ) -> Result<Status, Status> {
         let name = self.text(name, "open_device")?;
-        match self.environment.devices.open(&name) {
+        match device::open(&name, self.world.as_deref()) {
             Ok(device) => {
                 if let Some(path) = &device.path {
                     let message = format!("device '{name}' is {}", path.display());

@@ -121,7 +121,10 @@ fn beginnings_and_ends_are_reported_once() {
         }),
         ..injection(
             Trigger::At(ms(from)),
-            InjectedFault::World(WorldFault::CameraSmoke(0.5)),
+            InjectedFault::World {
+                component: None,
+                fault: WorldFault::CameraSmoke(0.5),
+            },
         )
     };
     // The second one is open when it begins again, and then stays longer.

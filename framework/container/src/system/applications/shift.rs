@@ -34,7 +34,7 @@ pub(super) fn injection(injection: &Injection, first: usize) -> Injection {
         InjectedFault::Callback { component, .. }
         | InjectedFault::Port { component, .. }
         | InjectedFault::Container { component, .. } => *component += first,
-        InjectedFault::World(_) => {}
+        InjectedFault::World { component, .. } => *component = Some(first + component.unwrap_or(0)),
     }
     if let Trigger::AtCycle { component, .. } = &mut shifted.trigger {
         *component += first;
@@ -68,10 +68,17 @@ mod tests {
         };
         assert_eq!(injection(&at(2), 5), at(7));
         let world = Injection {
-            what: InjectedFault::World(WorldFault::UnplugSonar(1)),
+            what: InjectedFault::World {
+                component: None,
+                fault: WorldFault::UnplugSonar(1),
+            },
             ..at(0)
         };
-        assert_eq!(injection(&world, 3).what, world.what);
+        let shifted = InjectedFault::World {
+            component: Some(3),
+            fault: WorldFault::UnplugSonar(1),
+        };
+        assert_eq!(injection(&world, 3).what, shifted);
     }
 
     #[test]

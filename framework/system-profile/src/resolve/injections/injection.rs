@@ -128,10 +128,10 @@ impl Context<'_> {
                 component: self.required(component)?,
                 failure: *failure,
             }),
-            DeclaredFault::World(fault) => self.world(*fault),
+            DeclaredFault::World(fault) => self.world(component, *fault),
             DeclaredFault::UnplugSonarOfComponent => {
                 let index = self.socket(component?)?;
-                self.world(WorldFault::UnplugSonar(index))
+                self.world(component, WorldFault::UnplugSonar(index))
             }
         }
     }
@@ -206,7 +206,7 @@ impl Context<'_> {
         true
     }
 
-    fn world(&self, fault: WorldFault) -> Option<InjectedFault> {
+    fn world(&self, component: Option<usize>, fault: WorldFault) -> Option<InjectedFault> {
         if self.application.world.is_none() {
             self.error(
                 &self.declared.kind,
@@ -218,7 +218,7 @@ impl Context<'_> {
             );
             return None;
         }
-        Some(InjectedFault::World(fault))
+        Some(InjectedFault::World { component, fault })
     }
 
     /// The socket that a sonar's component reads: its property `index`.

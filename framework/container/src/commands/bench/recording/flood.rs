@@ -10,10 +10,10 @@ use container::adaptation::AdaptationRequests;
 use container::assembly::assemble;
 use container::clock::Clock;
 use container::component::Environment;
-use container::device::Devices;
 use container::event_log::EventLog;
 use container::recording::{PortRecorder, Recorder, RecordingOptions};
 use container::schedule::BusyTime;
+use container::world::Worlds;
 use recording::{Layout, read};
 use serde::Serialize;
 use serde_json::Value;
@@ -106,11 +106,10 @@ fn environment() -> io::Result<Arc<Environment>> {
     Ok(Arc::new(Environment {
         clock: Clock::real(),
         events: EventLog::nowhere(),
-        devices: Devices::new(None),
         observations: container::supervision::Observations::default(),
         injections: container::injection::Injections::default(),
         scenes: container::supervision::Scenes::default(),
-        world: None,
+        worlds: Worlds::default(),
         score: None,
         adaptation_requests: AdaptationRequests::default(),
         busy: BusyTime::default(),

@@ -83,7 +83,7 @@ fn measure(arguments: &BatchArguments) -> io::Result<Vec<Row>> {
         supervised: None,
         network: None,
     };
-    let system = System::start(vec![application], None, options).map_err(io::Error::other)?;
+    let system = System::start(vec![application], Vec::new(), options).map_err(io::Error::other)?;
     // Above the load, below everything that is measured. Not before the system's threads are there,
     // which would take it over.
     let _without = ask_for_real_time(1);
