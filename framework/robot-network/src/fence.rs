@@ -52,15 +52,10 @@ impl Claim {
 }
 
 impl Fence {
-    /// Whether the data of this robot were the last ones to pass.
-    pub fn obeys(&self, robot: &str) -> bool {
-        let obeyed = self.strongest.as_ref();
-        obeyed.is_some_and(|claim| claim.robot == robot)
-    }
-
     /// A robot has died. Returns whether its data were the last ones to pass.
     pub fn died(&mut self, robot: &str) -> bool {
-        let is_obeyed = self.obeys(robot);
+        let obeyed = self.strongest.as_ref();
+        let is_obeyed = obeyed.is_some_and(|claim| claim.robot == robot);
         self.is_vacant |= is_obeyed;
         is_obeyed
     }

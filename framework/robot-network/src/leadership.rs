@@ -84,11 +84,6 @@ impl Leadership {
         self.decider.as_deref() == Some(&self.own)
     }
 
-    /// Who decides; none before the first look.
-    pub fn decider(&self) -> Option<&str> {
-        self.decider.as_deref()
-    }
-
     /// The latest term that this robot knows.
     pub fn term(&self) -> u64 {
         self.term

@@ -114,11 +114,25 @@ fn from_port_to_port_takes_at_most_twice_what_zenoh_takes() {
              <target component_name='timekeeper' port_name='{it}'/></remote_connection>"
         )
     });
-    let first = Application::new()
-        .with(&Member::new("stamper", "stamper"))
-        .element(&network("R1", one, &[], &offers.concat()));
+    let ports = |usage: &str| {
+        let kinds = [("small", "SmallStamp"), ("large", "LargeStamp")];
+        kinds
+            .map(|(name, kind)| {
+                format!(
+                    "<data_port><name>{name}</name><usage>{usage}</usage>\
+                     <data_type>{kind}</data_type></data_port>"
+                )
+            })
+            .concat()
+    };
+    let stamper = Member::new("stamper", "stamper").ports(&ports("output"));
+    let timekeeper = Member::new("timekeeper", "timekeeper").ports(&ports("input"));
+    let first =
+        Application::new()
+            .with(&stamper)
+            .element(&network("R1", one, &[], &offers.concat()));
     let second = Application::new()
-        .with(&Member::new("timekeeper", "timekeeper").kind("aperiodic"))
+        .with(&timekeeper.kind("aperiodic").queue("FIFO", 4))
         .element(&network("R2", other, &[one], &sources.concat()));
     let (_first, run) = (start(&first), start(&second));
     wait_for(&second, "R1 decides", 1);
