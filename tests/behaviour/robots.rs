@@ -1,5 +1,10 @@
 //! Robots in a network: containers of their own on one machine, over loopback.
 
+mod encryption;
+mod forwarder;
+mod latency;
+mod partition;
+
 use std::net::TcpListener;
 use std::path::Path;
 use std::process::Command;

@@ -3,7 +3,9 @@
 //! Every datum from another robot says in which term it was sent, by whom, and in which of the
 //! sender's lives. A later term is stronger; of one term the first name; of one robot its latest
 //! life. What is weaker than the strongest that has come is refused, so after a partition no
-//! actuator obeys two masters, whatever they think of themselves.
+//! actuator obeys two masters, whatever they think of themselves. Only when the one that is obeyed
+//! has died another one of its term takes its place: no new reign begins if it was not the one who
+//! decides.
 
 use std::cmp::Ordering;
 
@@ -35,6 +37,8 @@ pub struct Refused {
 #[derive(Debug, Clone, Default)]
 pub struct Fence {
     strongest: Option<Claim>,
+    /// Whether the strongest has died since.
+    is_vacant: bool,
 }
 
 impl Claim {
@@ -48,10 +52,12 @@ impl Claim {
 }
 
 impl Fence {
-    /// Whether the data of this robot were the last ones to pass.
-    pub fn obeys(&self, robot: &str) -> bool {
+    /// A robot has died. Returns whether its data were the last ones to pass.
+    pub fn died(&mut self, robot: &str) -> bool {
         let obeyed = self.strongest.as_ref();
-        obeyed.is_some_and(|claim| claim.robot == robot)
+        let is_obeyed = obeyed.is_some_and(|claim| claim.robot == robot);
+        self.is_vacant |= is_obeyed;
+        is_obeyed
     }
 
     /// Lets a datum pass, or not. Allocates only when another one is obeyed than before.
@@ -62,6 +68,7 @@ impl Fence {
         if let Some(obeyed) = &self.strongest {
             let is_same = obeyed.robot == robot && obeyed.incarnation == incarnation;
             if is_same && obeyed.term == term {
+                self.is_vacant = false;
                 return Ok(());
             }
         }
@@ -71,22 +78,26 @@ impl Fence {
             incarnation,
         };
         match &self.strongest {
-            Some(obeyed) if is_weaker(&offered, obeyed) => Err(Refused {
+            Some(obeyed) if is_weaker(&offered, obeyed, self.is_vacant) => Err(Refused {
                 obeyed: obeyed.clone(),
                 offered,
             }),
             _ => {
                 self.strongest = Some(offered);
+                self.is_vacant = false;
                 Ok(())
             }
         }
     }
 }
 
-/// A robot's own earlier life is weaker in whatever term it speaks.
-fn is_weaker(offered: &Claim, obeyed: &Claim) -> bool {
-    let is_earlier_life = offered.robot == obeyed.robot && offered.incarnation < obeyed.incarnation;
-    is_earlier_life || offered.strength(obeyed) == Ordering::Less
+/// A robot's own earlier life is weaker in whatever term it speaks. Who is dead keeps nobody of its
+/// own term away.
+fn is_weaker(offered: &Claim, obeyed: &Claim, is_dead: bool) -> bool {
+    let is_same = offered.robot == obeyed.robot;
+    let is_earlier_life = is_same && offered.incarnation < obeyed.incarnation;
+    let is_heir = is_dead && !is_same && offered.term == obeyed.term;
+    is_earlier_life || !is_heir && offered.strength(obeyed) == Ordering::Less
 }
 
 #[cfg(test)]
@@ -127,6 +138,20 @@ mod tests {
                 .collect();
             assert_eq!(admitted, expected, "{claims:?}");
         }
+    }
+
+    #[test]
+    fn who_is_dead_keeps_nobody_of_its_term_away() {
+        let mut fence = Fence::default();
+        let admits = |fence: &mut Fence, term, robot| fence.admit(term, robot, 1).is_ok();
+        assert!(admits(&mut fence, 2, "R1") && !admits(&mut fence, 2, "R2"));
+        assert!(!fence.died("R2") && !admits(&mut fence, 2, "R2"));
+        // Dead, and heard all the same: not dead.
+        assert!(fence.died("R1") && admits(&mut fence, 2, "R1") && !admits(&mut fence, 2, "R2"));
+        assert!(fence.died("R1") && !admits(&mut fence, 1, "R2") && admits(&mut fence, 2, "R3"));
+        assert!(admits(&mut fence, 2, "R2") && !admits(&mut fence, 2, "R3"));
+        // It was only out of hearing.
+        assert!(admits(&mut fence, 2, "R1") && !admits(&mut fence, 2, "R2"));
     }
 
     #[test]

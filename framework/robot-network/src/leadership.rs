@@ -49,14 +49,18 @@ impl Leadership {
         Some(self.role())
     }
 
-    /// A robot has spoken of this term, as the one who decides if `decides`. A robot that decides
-    /// and hears of a reign as late as its own begins a new one.
-    pub fn heard(&mut self, decides: bool, term: u64) -> Option<Role> {
+    /// A robot has spoken of this term, in which `decider` decides for it. A robot that decides and
+    /// hears of a reign as late as its own begins a new one, unless that is the reign of somebody
+    /// with a better right: where two that do not hear each other are both heard by a third, their
+    /// terms would outbid each other without end, and the third would obey them in turn.
+    pub fn heard(&mut self, robot: &str, decider: Option<&str>, term: u64) -> Option<Role> {
         if !self.decides() {
             self.term = self.term.max(term);
             return None;
         }
-        if term < self.term || term == self.term && !decides {
+        let has_better_right = decider.is_some_and(|decider| decider < self.own.as_str());
+        let is_later = term > self.term || term == self.term && decider == Some(robot);
+        if has_better_right || !is_later {
             return None;
         }
         self.term = term;
@@ -111,7 +115,7 @@ mod tests {
         assert_eq!(second.look(&["R2"]), decides(1));
         assert_eq!(second.look(&["R2", "R3"]), None);
         assert_eq!(second.look(&["R1", "R2", "R3"]), follows("R1"));
-        assert_eq!(second.heard(true, 5), None);
+        assert_eq!(second.heard("R1", Some("R1"), 5), None);
         assert_eq!((second.term(), second.decides()), (5, false));
         // R1 dies: a reign later than any that R1 has held.
         assert_eq!(second.look(&["R2", "R3"]), decides(6));
@@ -128,22 +132,38 @@ mod tests {
         assert_eq!(second.look(&["R2"]), decides(2));
         // They meet: R1 hears of the second reign of R2.
         assert_eq!(first.look(&["R1", "R2"]), None);
-        assert_eq!(first.heard(true, 2), decides(3));
+        assert_eq!(first.heard("R2", Some("R2"), 2), decides(3));
         assert_eq!(second.look(&["R1", "R2"]), follows("R1"));
-        assert_eq!(second.heard(true, 3), None);
+        assert_eq!(second.heard("R1", Some("R1"), 3), None);
         assert_eq!((first.term(), second.term()), (3, 3));
         // What R2 says as a follower disturbs nobody.
-        assert_eq!(first.heard(false, 3), None);
+        assert_eq!(first.heard("R2", Some("R1"), 3), None);
     }
 
     #[test]
     fn old_terms_change_nothing() {
         let mut first = Leadership::new("R1");
         assert_eq!(first.look(&["R1"]), decides(1));
-        assert_eq!(first.heard(true, 9), decides(10));
+        assert_eq!(first.heard("R2", Some("R2"), 9), decides(10));
         for term in [0, 1, 9] {
-            assert_eq!(first.heard(true, term), None, "{term}");
+            assert_eq!(first.heard("R2", Some("R2"), term), None, "{term}");
         }
-        assert_eq!(first.heard(true, 10), decides(11));
+        assert_eq!(first.heard("R2", Some("R2"), 10), decides(11));
+    }
+
+    #[test]
+    fn a_decider_that_one_of_better_right_cannot_hear_does_not_outbid_him() {
+        let (mut first, mut second) = (Leadership::new("R1"), Leadership::new("R2"));
+        assert_eq!(second.look(&["R2", "R3"]), decides(1));
+        assert_eq!(first.look(&["R1", "R3"]), decides(1));
+        // R3 hears both. It has followed R2 so far, and follows R1 from now on.
+        assert_eq!(first.heard("R3", Some("R2"), 1), None);
+        assert_eq!(first.heard("R3", Some("R1"), 2), decides(3));
+        for term in [3, 4] {
+            assert_eq!(second.heard("R3", Some("R1"), term), None, "{term}");
+        }
+        assert_eq!((second.decides(), second.term()), (true, 1));
+        // R1 dies: for R3 R2 decides again, in a term that R3 still has to hear of.
+        assert_eq!(second.heard("R3", Some("R2"), 3), decides(4));
     }
 }

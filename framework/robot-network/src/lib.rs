@@ -7,6 +7,7 @@
 
 #![forbid(unsafe_code)]
 
+mod credentials;
 mod fence;
 pub mod frame;
 mod leadership;
@@ -16,6 +17,7 @@ mod node;
 pub mod package;
 pub mod task;
 
+pub use credentials::{BadCredentials, Credentials};
 pub use fence::{Claim, Fence, Refused};
 pub use leadership::{Leadership, Role};
 pub use membership::{Change, Death, Membership};

@@ -17,8 +17,8 @@ pub struct Beat {
     pub incarnation: u64,
     /// The latest term that it knows.
     pub term: u64,
-    /// Whether it is the one who decides.
-    pub decides: bool,
+    /// Who decides, as far as it knows.
+    pub decider: Option<String>,
 }
 
 /// What a robot has: its component database, `DB_E-PBOs` of the ReFrESH paper.
@@ -115,10 +115,10 @@ mod tests {
         let beat = Beat {
             incarnation: 3,
             term: 2,
-            decides: true,
+            decider: Some("R1".to_owned()),
         };
         let bytes = encode(&beat).expect("a message");
-        assert_eq!(bytes, br#"{"incarnation":3,"term":2,"decides":true}"#);
+        assert_eq!(bytes, br#"{"incarnation":3,"term":2,"decider":"R1"}"#);
         assert_eq!(decode::<Beat>(&bytes).expect("a beat"), beat);
     }
 
@@ -129,7 +129,7 @@ mod tests {
             (&b""[..], "EOF"),
             (b"{\"incarnation\":3}", "missing field `term`"),
             (
-                b"{\"incarnation\":-1,\"term\":2,\"decides\":true}",
+                b"{\"incarnation\":-1,\"term\":2,\"decider\":null}",
                 "invalid value",
             ),
             (b"\xff\xfe", "expected value"),

@@ -5,6 +5,7 @@
 //! and gives it, and `database/R`, `package/R` are asked.
 //! zenoh's own threads bring what comes; what waits for this robot has a bound.
 
+mod access;
 mod configuration;
 mod hearing;
 mod key;
@@ -23,6 +24,7 @@ use zenoh::qos::{CongestionControl, Priority};
 use zenoh::query::Queryable;
 use zenoh::sample::Sample;
 
+use crate::credentials::BadCredentials;
 use crate::message::{self, Beat, FaultNotice};
 pub use configuration::OpenOptions;
 pub use hearing::Heard;
@@ -46,6 +48,9 @@ pub enum NodeError {
         /// What zenoh says.
         reason: String,
     },
+    /// The robot cannot prove its name.
+    #[error("the network cannot be entered: {0}")]
+    Credentials(#[source] BadCredentials),
     /// Something cannot be declared or sent.
     #[error("the network does not take '{what}': {reason}")]
     Refused {
@@ -97,7 +102,8 @@ impl Node {
     /// Enters the network. Other robots ask `answers` from now on.
     ///
     /// # Errors
-    /// When an address to listen at cannot be had.
+    /// When an address to listen at cannot be had, or the files that connections are secured with do
+    /// not prove the robot's name.
     pub fn open(options: &OpenOptions, answers: impl Answers) -> Result<Self, NodeError> {
         let config = configuration::of(options)?;
         let session = zenoh::open(config)

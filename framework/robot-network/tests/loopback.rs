@@ -58,6 +58,7 @@ fn options(robot: &str, listen: Option<u16>, connect: Option<u16>) -> OpenOption
         connect: connect.map(address).into_iter().collect(),
         scouting: false,
         silence_limit: Duration::from_secs(2),
+        security: None,
     }
 }
 
@@ -104,7 +105,7 @@ fn robots_hear_beats_faults_and_data_and_see_each_other_go() {
     let beat = Beat {
         incarnation: 7,
         term: 3,
-        decides: true,
+        decider: Some("R2".to_owned()),
     };
     second.beat(&beat).expect("sent");
     let heard = hear(

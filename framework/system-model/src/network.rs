@@ -27,12 +27,28 @@ pub struct NetworkSpecification {
     pub scouting: bool,
     /// Who is silent for so long is dead.
     pub silence_limit: Duration,
+    /// How its connections are secured; in the clear, and open to all, if they are not.
+    pub security: Option<NetworkSecurity>,
     /// Folder with sealed packages of components that other robots may fetch.
     pub packages: Option<PathBuf>,
     /// Outputs that other robots may listen to.
     pub offers: Vec<PortReference>,
     /// Inputs that other robots feed.
     pub remote_inputs: Vec<RemoteInput>,
+}
+
+/// How the connections of a robot are secured: by TLS, both sides showing certificates that one
+/// authority has signed. The common name of a robot's certificate is the robot's name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NetworkSecurity {
+    /// File with the robot's certificate, and those between it and the authority's, as PEM.
+    pub certificate: PathBuf,
+    /// File with the certificate's private key, as PEM.
+    pub private_key: PathBuf,
+    /// File with the authority's certificate, as PEM.
+    pub authority: PathBuf,
+    /// The robots that are listened to and told anything, each under its own name only.
+    pub allowed: Vec<String>,
 }
 
 /// An input that another robot feeds. Several may feed one; then one of them is obeyed.

@@ -161,6 +161,10 @@ pub struct NetworkProfile {
     pub scouting: bool,
     /// Who is silent for so long is dead.
     pub silence_limit: Duration,
+    /// How connections are secured.
+    pub tls: Option<TlsProfile>,
+    /// Robots that may speak.
+    pub allowed: Vec<Located<String>>,
     /// Folder with sealed packages of components, as written.
     pub packages: Option<String>,
     /// Outputs that other robots may listen to.
@@ -182,6 +186,17 @@ pub struct FetchProfile {
     pub key: Located<String>,
     /// How long the start waits for it.
     pub limit: Duration,
+}
+
+/// `tls`: files that connections are secured with, as written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TlsProfile {
+    /// The robot's certificate.
+    pub certificate: Located<String>,
+    /// Its private key.
+    pub private_key: Located<String>,
+    /// Certificate of the authority that has signed the certificates of all robots.
+    pub authority: Located<String>,
 }
 
 /// `remote_connection`: an input that another robot feeds.

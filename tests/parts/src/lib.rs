@@ -18,6 +18,26 @@ pub struct Sample {
     pub value: f64,
 }
 
+/// The time, in a datum of 64 bytes.
+#[derive(PortData, Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
+pub struct SmallStamp {
+    /// When it was sent, in nanoseconds since 1970.
+    pub sent_ns: u64,
+    /// All else.
+    pub rest: [u64; 7],
+}
+
+/// The time, in a datum as large as a picture of 160 x 120 pixels: 57,600 bytes.
+#[derive(PortData, Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
+pub struct LargeStamp {
+    /// When it was sent, in nanoseconds since 1970.
+    pub sent_ns: u64,
+    /// All else.
+    pub rest: [u8; 57_592],
+}
+
 service_type! {
     /// A service with both kinds of method.
     pub Arithmetic {

@@ -10,6 +10,7 @@ use std::process::ExitCode;
 use clap::{Args, Subcommand, ValueEnum};
 use robot_network::package::Manifest;
 use serde_json::json;
+use system_model::network::NetworkSecurity;
 
 use super::run::Failed;
 use super::{exit_code, manual, output};
@@ -68,12 +69,41 @@ enum PackageCommand {
         /// The robot that has it
         #[arg(long, value_name = "ROBOT")]
         from: String,
-        /// Its address, like tcp/192.168.0.2:7447
+        /// Its address, like tcp/192.168.0.2:7447, or with certificates tls/192.168.0.2:7447
         #[arg(long, value_name = "ADDRESS")]
         connect: String,
         #[command(flatten)]
+        credentials: Option<CredentialFiles>,
+        #[command(flatten)]
         receiver: Receiver,
     },
+}
+
+/// What proves to a robot with secured connections who asks. The common name of the certificate is
+/// one of its own, which the robot allows.
+#[derive(Debug, Args)]
+struct CredentialFiles {
+    /// File with a certificate that the robots' authority has signed, for an address like tls/192.168.0.2:7447
+    #[arg(long, required = false, value_name = "FILE", requires_all = ["private_key", "authority"])]
+    certificate: PathBuf,
+    /// File with the certificate's private key
+    #[arg(long, required = false, value_name = "FILE", requires_all = ["certificate", "authority"])]
+    private_key: PathBuf,
+    /// File with the authority's certificate
+    #[arg(long, required = false, value_name = "FILE", requires_all = ["certificate", "private_key"])]
+    authority: PathBuf,
+}
+
+impl CredentialFiles {
+    /// What is needed to speak with one robot.
+    fn to_speak_with(&self, robot: &str) -> NetworkSecurity {
+        NetworkSecurity {
+            certificate: self.certificate.clone(),
+            private_key: self.private_key.clone(),
+            authority: self.authority.clone(),
+            allowed: vec![robot.to_owned()],
+        }
+    }
 }
 
 /// Who takes a package, and where to.
@@ -117,9 +147,11 @@ pub fn run(arguments: &PackageArguments) -> ExitCode {
             component,
             from,
             connect,
+            credentials,
             receiver,
         } => {
-            let bytes = fetch::fetch(component, from, connect);
+            let security = credentials.as_ref().map(|files| files.to_speak_with(from));
+            let bytes = fetch::fetch(component, from, connect, security);
             bytes.and_then(|bytes| receiver.take(&bytes, Some(component)))
         }
     };

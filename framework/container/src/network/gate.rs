@@ -8,7 +8,7 @@ use robot_network::{Fence, frame};
 use system_model::data_type::DataType;
 use system_model::specification::QueuePolicy;
 
-use super::Shared;
+use super::shared::Shared;
 use crate::port::{Newest, Receiver, Sender, connection};
 use crate::wake::Wake;
 
@@ -130,8 +130,8 @@ impl Gate {
     /// A robot is dead: what it has sent counts as if it had come at the beginning of the run,
     /// unless the input obeys another robot.
     pub(super) fn died(&self, robot: &str) {
-        let entry = self.entry();
-        if entry.fence.obeys(robot) {
+        let mut entry = self.entry();
+        if entry.fence.died(robot) {
             // Nothing can come between: whoever sends holds the lock.
             self.newest.store(ANCIENT_NS, Ordering::Relaxed);
         }

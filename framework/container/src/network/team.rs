@@ -10,7 +10,7 @@ use robot_network::message::{Beat, FaultNotice};
 use robot_network::{Change, Heard, Leadership, Membership, Node, Role};
 
 use super::inputs::Listening;
-use super::{Shared, TeamView};
+use super::shared::{Shared, TeamView};
 use crate::event_log::Event;
 
 /// Beats within the limit of silence: one that is lost, or late by a busy machine, is no death.
@@ -75,7 +75,7 @@ impl Team {
         let _ended = self.node.beat(&Beat {
             incarnation: self.shared.incarnation,
             term: self.leadership.term(),
-            decides: self.leadership.decides(),
+            decider: self.leadership.decider().map(str::to_owned),
         });
     }
 
@@ -94,7 +94,8 @@ impl Team {
                 let changes = self.membership.heard(&robot, beat.incarnation, now);
                 self.follow(changes);
                 if robot != self.shared.robot {
-                    let role = self.leadership.heard(beat.decides, beat.term);
+                    let decider = beat.decider.as_deref();
+                    let role = self.leadership.heard(&robot, decider, beat.term);
                     self.take_role(role);
                 }
             }

@@ -2,10 +2,12 @@
 
 use std::time::Duration;
 
-use serde_json::json;
+use serde_json::{Value, json};
+use system_model::network::NetworkSecurity;
 use zenoh::Config;
 
-use super::NodeError;
+use super::{NodeError, access};
+use crate::credentials::Credentials;
 
 /// How a robot enters the network.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,11 +24,18 @@ pub struct OpenOptions {
     pub scouting: bool,
     /// Who is silent for so long is dead.
     pub silence_limit: Duration,
+    /// How connections are secured; in the clear, and open to all, if they are not.
+    pub security: Option<NetworkSecurity>,
 }
 
 /// First and longest pause between two tries to reach a robot that is not there: one that was
 /// started again is found within a second, and one that never comes costs a packet a second.
 const RETRY_MS: (u64, u64) = (100, 1000);
+
+/// Longest time for all that is said before a connection stands: it begins anew behind TCP's own
+/// first repetition of a lost packet, after a second, and not after zenoh's ten seconds. So a
+/// partition that swallows packets is over soon after it has healed.
+const OPENING_MS: u64 = 2500;
 
 /// Peers, no routers. zenoh's own limit of silence ends connections to machines that hang; ours,
 /// which is not longer, tells that they do.
@@ -52,14 +61,47 @@ pub(super) fn of(options: &OpenOptions) -> Result<Config, NodeError> {
         // What peers tell of other peers is scouting, too.
         ("scouting/gossip/enabled", json!(options.scouting)),
         ("transport/link/tx/lease", json!(lease_ms)),
+        ("transport/unicast/open_timeout", json!(OPENING_MS)),
+        ("transport/unicast/accept_timeout", json!(OPENING_MS)),
     ] {
-        config
-            .insert_json5(key, &value.to_string())
-            .map_err(|error| NodeError::Open {
-                reason: format!("{key} = {value}: {error}"),
-            })?;
+        insert(&mut config, key, &value)?;
+    }
+    match &options.security {
+        None => insert(&mut config, "transport/link/protocols", &json!(["tcp"]))?,
+        Some(security) => secure(&mut config, &options.robot, security)?,
     }
     Ok(config)
+}
+
+/// TLS alone, with certificates on both sides; and what may be said by whom. Who listens at an
+/// address is known by the name in his certificate, and not by the address, so that robots may move.
+fn secure(config: &mut Config, robot: &str, security: &NetworkSecurity) -> Result<(), NodeError> {
+    let credentials = Credentials::read(security).map_err(NodeError::Credentials)?;
+    credentials.are_of(robot).map_err(NodeError::Credentials)?;
+    let [certificate, private_key, authority] = credentials
+        .files()
+        .map(|content| base64_simd::STANDARD.encode_to_string(content));
+    let tls = json!({
+        "enable_mtls": true,
+        "verify_name_on_connect": false,
+        "root_ca_certificate_base64": authority,
+        "listen_certificate_base64": certificate,
+        "listen_private_key_base64": private_key,
+        "connect_certificate_base64": certificate,
+        "connect_private_key_base64": private_key,
+    });
+    insert(config, "transport/link/protocols", &json!(["tls"]))?;
+    insert(config, "transport/link/tls", &tls)?;
+    let access = access::control(robot, &security.allowed);
+    insert(config, "access_control", &access)
+}
+
+/// The value may be secret: the error does not say it.
+fn insert(config: &mut Config, key: &str, value: &Value) -> Result<(), NodeError> {
+    let inserted = config.insert_json5(key, &value.to_string());
+    inserted.map_err(|error| NodeError::Open {
+        reason: format!("{key}: {error}"),
+    })
 }
 
 #[cfg(test)]
@@ -75,6 +117,7 @@ mod tests {
             connect: vec!["tcp/127.0.0.1:7448".to_owned()],
             scouting: false,
             silence_limit: Duration::from_millis(500),
+            security: None,
         };
         let config = of(&options).expect("a configuration");
         let value = |key: &str| config.get_json(key).expect("a value");

@@ -1,9 +1,10 @@
 //! `<network>`: the ports that lead into it are there, and of the right kind.
 
-use std::path::Path;
+use std::fs::File;
+use std::path::{Path, PathBuf};
 
-use system_model::network::{NetworkSpecification, RemoteInput};
-use system_model::profile::{ConnectionEnd, NetworkProfile};
+use system_model::network::{NetworkSecurity, NetworkSpecification, RemoteInput};
+use system_model::profile::{ConnectionEnd, Located, NetworkProfile};
 use system_model::specification::{PortDirection, PortKind, PortReference};
 
 use super::Assembly;
@@ -12,7 +13,8 @@ use crate::problem::Severity;
 use crate::suggest::quoted;
 
 impl Assembly<'_> {
-    /// Resolves the ports of a network, and its folder, which is given from `beside`. Call it while the connections are at hand.
+    /// Resolves the ports of a network, and its files and folder, which are given from `beside`.
+    /// Call it while the connections are at hand.
     pub(super) fn network(
         &self,
         scope: &Scope,
@@ -36,6 +38,7 @@ impl Assembly<'_> {
             connect: profile.connect.clone(),
             scouting: profile.scouting,
             silence_limit: profile.silence_limit,
+            security: security(scope, profile, beside),
             packages: profile.packages.as_ref().map(|folder| beside.join(folder)),
             offers: offers.collect(),
             remote_inputs: inputs.collect(),
@@ -80,4 +83,45 @@ impl Assembly<'_> {
         }
         Some(reference)
     }
+}
+
+fn security(scope: &Scope, profile: &NetworkProfile, beside: &Path) -> Option<NetworkSecurity> {
+    let tls = profile.tls.as_ref()?;
+    let robots = profile.allowed.iter().map(|robot| robot.value.clone());
+    let [certificate, private_key, authority] = [
+        (&tls.certificate, "the certificate of this robot"),
+        (&tls.private_key, "its private key"),
+        (
+            &tls.authority,
+            "the certificate of the authority that has signed those of all robots",
+        ),
+    ]
+    .map(|(file, meaning)| readable(scope, file, meaning, beside));
+    Some(NetworkSecurity {
+        certificate,
+        private_key,
+        authority,
+        allowed: robots.collect(),
+    })
+}
+
+/// A file, given from `beside`, that can be read; what it holds is seen when the network is entered.
+fn readable(scope: &Scope, file: &Located<String>, meaning: &str, beside: &Path) -> PathBuf {
+    let path = beside.join(&file.value);
+    let opened = File::open(&path).and_then(|file| file.metadata());
+    let reason = match opened {
+        Ok(metadata) if metadata.is_file() => return path,
+        Ok(_) => "it is no file".to_owned(),
+        Err(error) => error.to_string(),
+    };
+    scope.file.document.report(
+        Severity::Error,
+        file,
+        format!("`{}` cannot be read: {reason}", quoted(&file.value)),
+        Some(format!(
+            "this is to be {meaning}, as PEM, given from the folder of this file; looked for {}",
+            path.display()
+        )),
+    );
+    path
 }

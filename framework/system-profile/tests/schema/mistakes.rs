@@ -132,6 +132,42 @@ const READER_ONLY: &[(&str, Edit)] = &[
     (
         "a file that is not there",
         (
+            "secured_garden.xml",
+            "private_key=\"probe.xml\"",
+            "private_key=\"R1.key\"",
+        ),
+    ),
+    (
+        "an address depends on another element",
+        (
+            "secured_garden.xml",
+            "listen=\"tls/127.0.0.1:7447 ",
+            "listen=\"tcp/127.0.0.1:7447 ",
+        ),
+    ),
+    (
+        "an address depends on another element",
+        (
+            "garden.xml",
+            "listen=\"tcp/127.0.0.1:7447 ",
+            "listen=\"tls/127.0.0.1:7447 ",
+        ),
+    ),
+    (
+        "an element depends on another one",
+        (
+            "secured_garden.xml",
+            "<tls certificate=\"pump.xml\" private_key=\"probe.xml\" authority=\"arena.xml\"/>",
+            "",
+        ),
+    ),
+    (
+        "whoever feeds an input is allowed",
+        ("secured_garden.xml", "<allow robot=\"R2\"/>", ""),
+    ),
+    (
+        "a file that is not there",
+        (
             "garden.xml",
             "<reference>triple.xml",
             "<reference>tripel.xml",

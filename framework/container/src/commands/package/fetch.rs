@@ -2,7 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use robot_network::{NodeError, OpenOptions, Visitor};
+use robot_network::{Credentials, NodeError, OpenOptions, Visitor};
+use system_model::network::NetworkSecurity;
 
 use crate::commands::exit_code;
 use crate::commands::run::Failed;
@@ -39,14 +40,28 @@ pub(in crate::commands) enum NotSent {
 }
 
 /// Fetches the package of a component from the robot at an address.
-pub(super) fn fetch(component: &str, robot: &str, address: &str) -> Result<Vec<u8>, Failed> {
+pub(super) fn fetch(
+    component: &str,
+    robot: &str,
+    address: &str,
+    security: Option<NetworkSecurity>,
+) -> Result<Vec<u8>, Failed> {
+    let name = match &security {
+        Some(security) => {
+            let credentials = Credentials::read(security).map_err(NodeError::Credentials);
+            let credentials = credentials.map_err(|error| failed(&error))?;
+            credentials.name().to_owned()
+        }
+        None => format!("visitor_{}", std::process::id()),
+    };
     let options = OpenOptions {
-        robot: format!("visitor_{}", std::process::id()),
+        robot: name,
         incarnation: 1,
         listen: Vec::new(),
         connect: vec![address.to_owned()],
         scouting: false,
         silence_limit: CONNECTION_LIMIT,
+        security,
     };
     let visitor = Visitor::enter(&options).map_err(|error| failed(&error))?;
     let now = Instant::now();
@@ -58,7 +73,8 @@ pub(super) fn fetch(component: &str, robot: &str, address: &str) -> Result<Vec<u
         NotSent::Absent => Failed {
             code: exit_code::FILE,
             text: format!(
-                "no robot '{robot}' answers at {address}\n  help: does it run, and listen there?"
+                "no robot '{robot}' answers at {address}\n  help: does it run, listen there, and, if its \
+                 connections are secured, allow the name in the certificate?"
             ),
         },
         NotSent::NotGiven => Failed {

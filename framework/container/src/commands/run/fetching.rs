@@ -16,6 +16,7 @@ use container::library::LibrarySearch;
 use indicatif::ProgressBar;
 use robot_network::package::{Package, TrustedKeys};
 use robot_network::{OpenOptions, Visitor};
+use system_model::network::NetworkSecurity;
 use system_model::profile::{FetchProfile, Located, NetworkProfile, Profile};
 use system_profile::{Document, Severity, find_component, read_profile};
 
@@ -137,8 +138,7 @@ struct Fetching<'run> {
 
 impl Fetching<'_> {
     fn keys(&self, fetch: &FetchProfile) -> Result<TrustedKeys, Failed> {
-        let beside = self.document.path().parent().unwrap_or(Path::new(""));
-        trusted_keys(&beside.join(&fetch.key.value)).map_err(|failed| {
+        trusted_keys(&self.beside(&fetch.key)).map_err(|failed| {
             let help = "write public keys into it that `steadfast package key` prints, one a line";
             self.refused(fetch, &fetch.key, (failed.code, &failed.text), help)
         })
@@ -153,11 +153,30 @@ impl Fetching<'_> {
             connect: network.connect.clone(),
             scouting: network.scouting,
             silence_limit: SILENCE_LIMIT,
+            security: self.security(),
         });
         visitor.map_err(|error| Failed {
             code: exit_code::SYSTEM,
             text: error.to_string(),
         })
+    }
+
+    /// The same as the robot's own when it runs.
+    fn security(&self) -> Option<NetworkSecurity> {
+        let tls = self.network.tls.as_ref()?;
+        let allowed = self.network.allowed.iter();
+        Some(NetworkSecurity {
+            certificate: self.beside(&tls.certificate),
+            private_key: self.beside(&tls.private_key),
+            authority: self.beside(&tls.authority),
+            allowed: allowed.map(|robot| robot.value.clone()).collect(),
+        })
+    }
+
+    /// A file as the application names it.
+    fn beside(&self, file: &Located<String>) -> PathBuf {
+        let folder = self.document.path().parent().unwrap_or(Path::new(""));
+        folder.join(&file.value)
     }
 
     fn fetch(
