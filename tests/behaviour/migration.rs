@@ -25,7 +25,7 @@ struct Sender {
 }
 
 /// Profile, library, key and package of the traveller, in the folder of a robot.
-fn pack(robot: &Application) {
+pub(crate) fn pack(robot: &Application) {
     let folder = robot.folder();
     let library = artifacts().join("libcounter.so");
     std::fs::copy(library, folder.join("libtraveller.so")).expect("a copy of the counter");
@@ -41,7 +41,7 @@ fn pack(robot: &Application) {
     assert_eq!(sealed.code, Some(0), "{sealed}");
 }
 
-fn traveller() -> Member {
+pub(crate) fn traveller() -> Member {
     let member = Member::new(TRAVELLER, TRAVELLER).property("remembers", "true");
     member.ports(OUTPUT)
 }
@@ -81,7 +81,7 @@ impl Sender {
 }
 
 /// A robot that records what the traveller counts.
-fn receiver(network: &str) -> Application {
+pub(crate) fn receiver(network: &str) -> Application {
     Application::new()
         .with_reference(TRAVELLER, "traveller.xml")
         .with(&Member::new("recorder", "recorder").property("verbose", "true"))

@@ -4,6 +4,7 @@
 mod certificates;
 
 use super::*;
+use crate::migration::{pack, receiver, traveller};
 use certificates::Authority;
 use system_model::network::NetworkSecurity;
 
@@ -147,4 +148,32 @@ fn a_package_is_fetched_by_whoever_may_ask() {
     let taken = fetch("workbench", "taken");
     assert_eq!(taken.code, Some(0), "{taken}");
     assert!(folder.join("taken/librelay.so").exists());
+}
+
+/// Whoever asks before the start proves the robot's own name, and is not taken for the robot.
+#[test]
+fn a_component_is_sent_to_a_robot_that_proves_its_name() {
+    let _turn = take_turn();
+    let authority = Authority::new("team");
+    let (one, other) = (free_port(), free_port());
+    let security = authority.security("R2", &["R1"]);
+    let network = secured("R2", other, &[], &security, "");
+    let sender = Application::new()
+        .with(&Member::new("diary", "diary"))
+        .with_profile(&traveller())
+        .element(&network.replace("<network ", "<network packages='packages' "));
+    pack(&sender);
+    let _sending = start(&sender);
+    sender.wait_until(|events| events.contains("run_started"));
+    let security = authority.security("R1", &["R2"]);
+    let fetch = "<fetch component='traveller' from='R2' key='team.pub' within='30s'/>";
+    let receiver = receiver(&secured("R1", one, &[other], &security, fetch));
+    let key = std::fs::read(sender.folder().join("team.pub")).expect("a key");
+    receiver.write("team.pub", key);
+    let _receiving = start(&receiver);
+    receiver.wait_until(|events| events.contains("\"got "));
+    wait_for(&sender, "R1 decides", 1);
+    let mut lives = changes(&sender);
+    lives.retain(|change| change == "R1 appeared" || change == "R1 died");
+    assert_eq!(lives, ["R1 appeared"]);
 }

@@ -138,6 +138,17 @@ mod tests {
     }
 
     #[test]
+    fn a_file_is_named_so_that_it_is_found() {
+        for name in ["libcamera.so", "Camera.dll", "camera", "path-planner"] {
+            let file = file_name(name).expect("a plain name");
+            assert!(candidates(name).contains(&file), "{name}: {file}");
+        }
+        for name in ["", " ", "vision/camera", "..\\camera.dll", "../camera.so"] {
+            assert_eq!(file_name(name), None, "{name}");
+        }
+    }
+
+    #[test]
     fn a_name_that_leads_elsewhere_is_refused() {
         let search = LibrarySearch::new(vec![PathBuf::from(".")]);
         for name in [

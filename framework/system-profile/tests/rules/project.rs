@@ -187,7 +187,7 @@ impl Project {
         let message = problem.message.replace(&*folder, "");
         match problem.severity {
             Severity::Error => message,
-            Severity::Warning => format!("warning: {message}"),
+            Severity::Warning | Severity::Note => format!("warning: {message}"),
         }
     }
 }

@@ -166,6 +166,26 @@ const READER_ONLY: &[(&str, Edit)] = &[
         ("secured_garden.xml", "<allow robot=\"R2\"/>", ""),
     ),
     (
+        "whoever sends a component is allowed",
+        (
+            "secured_garden.xml",
+            "<allow robot=\"R3\"/>",
+            "<allow robot=\"R3\"/><fetch component=\"pump\" from=\"R4\" key=\"team.pub\"/>",
+        ),
+    ),
+    (
+        "a component is fetched once",
+        (
+            "garden.xml",
+            "<fetch component=\"probe\"",
+            "<fetch component=\"pump\"",
+        ),
+    ),
+    (
+        "a robot does not ask itself",
+        ("garden.xml", "from=\"R-3\"", "from=\"R1\""),
+    ),
+    (
         "a file that is not there",
         (
             "garden.xml",
