@@ -79,6 +79,11 @@ impl Leadership {
         }
     }
 
+    /// Who decides; none before the first look.
+    pub fn decider(&self) -> Option<&str> {
+        self.decider.as_deref()
+    }
+
     /// Whether this robot decides.
     pub fn decides(&self) -> bool {
         self.decider.as_deref() == Some(&self.own)
