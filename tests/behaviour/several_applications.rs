@@ -193,5 +193,46 @@ fn applications_drive_in_worlds_of_their_own() {
         let last = tracked.last().expect("pictures are tracked");
         assert_eq!(last.error > 40.0, in_smoke, "{name}: {}", last.error);
     }
-    assert_eq!(drive().summary()["robots"], *robots);
+    let again = drive();
+    assert_eq!(again.summary()["robots"], *robots);
+    assert!(again.raw_events() == outcome.raw_events());
+}
+
+/// The run is over when the robot of each world has reached its target.
+#[test]
+fn a_run_in_several_worlds_ends_when_all_have_arrived() {
+    let run = Application::new();
+    let shipped = |name: &str| {
+        let file = repository().join("profiles").join(name);
+        std::fs::read_to_string(file).expect("a shipped file")
+    };
+    run.write("other.xml", shipped("worlds/target_arena.xml"));
+    let text = shipped("applications/target_following.xml");
+    let robot = |name: &str, world: &str| {
+        let named = format!("<name>{name}</name>");
+        let text = text.replace("<name>target_following</name>", &named);
+        run.write(
+            &format!("{name}.xml"),
+            text.replace("target_arena.xml", world),
+        )
+    };
+    let files = [robot("one", "target_arena.xml"), robot("two", "other.xml")];
+    let search = |folder: &str| repository().join(folder).display().to_string();
+    let (components, worlds) = (search("profiles/components"), search("profiles/worlds"));
+    let paths = ["--search-path", &components, "--search-path", &worlds];
+    let simulated = ["--clock", "simulated", "--for", "300s"];
+    let outcome = run.run_together(&files, &[&simulated[..], &paths].concat());
+    let outcome = outcome.ended_well();
+    let reached = outcome.all_events().iter();
+    let reached = reached.filter(|event| event["event"] == "target_reached");
+    let mut arrived: Vec<&str> = reached
+        .filter_map(|event| event["application"].as_str())
+        .collect();
+    arrived.sort_unstable();
+    assert_eq!(arrived, ["one", "two"]);
+    for name in arrived {
+        assert_eq!(outcome.summary()["robots"][name]["reached"], true, "{name}");
+        let application = &outcome.summary()["applications"][name];
+        assert_eq!(application["ended_by"], "target_reached", "{name}");
+    }
 }

@@ -5,9 +5,11 @@
 //! `binding` finds its names in the application; `local` listens to outputs, `evaluation` makes
 //! errors of what is heard, `estimation` lets fresh instances of what does not run work on current
 //! data, `change` goes from one way of doing the task to another. `team` does all that together with
-//! other robots: one of them decides (`leading`), the others do what it asks for (`following`). All of
+//! other robots: one of them decides (`asking`, `leading`), the others report and do what it asks for
+//! (`reporting`, `following`). All of
 //! it is on a lane of its own where time is real, else on the one thread.
 
+mod asking;
 mod binding;
 mod change;
 mod connecting;
@@ -25,6 +27,7 @@ mod overruns;
 mod passage;
 mod record;
 mod rehearsal;
+mod reporting;
 mod requests;
 mod settling;
 mod shadow;

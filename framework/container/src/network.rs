@@ -11,12 +11,13 @@ mod answers;
 mod gate;
 mod inputs;
 mod outputs;
+mod shared;
 mod task_line;
 mod team;
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -39,6 +40,7 @@ use answers::Holdings;
 pub use gate::Entrance;
 use inputs::RemoteInputs;
 use outputs::{Outputs, Ways};
+use shared::Shared;
 use task_line::{Gates, TaskLine};
 use team::Team;
 
@@ -112,28 +114,6 @@ pub struct Network {
     node: Arc<Node>,
     shared: Arc<Shared>,
     ways: Ways,
-}
-
-/// What the threads share.
-struct Shared {
-    robot: String,
-    incarnation: u64,
-    /// Term in which data are sent.
-    term: AtomicU64,
-    stopping: Arc<AtomicBool>,
-    environment: Arc<Environment>,
-    gates: Gates,
-    team: Mutex<TeamView>,
-    /// What tells tasks of something new.
-    wakes: Mutex<Vec<Arc<Wake>>>,
-}
-
-/// Who is there and who decides.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-struct TeamView {
-    /// None until all have had time to be heard.
-    decider: Option<String>,
-    alive: Vec<String>,
 }
 
 impl NetworkPorts {
@@ -213,6 +193,7 @@ impl NetworkPorts {
             stopping: Arc::default(),
             environment: Arc::clone(environment),
             gates: Gates::default(),
+            tasks: Mutex::default(),
             team: Mutex::default(),
             wakes: Mutex::default(),
         });
@@ -282,47 +263,6 @@ impl Drop for Network {
             // Each looks for the wish to stop several times a second; a panic has been printed.
             let _panicked = thread.join();
         }
-    }
-}
-
-impl Shared {
-    fn team(&self) -> MutexGuard<'_, TeamView> {
-        self.team.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// What becomes awake when there is something new.
-    fn wake_of_tasks(&self) -> Arc<Wake> {
-        let wake = Arc::default();
-        let mut wakes = self.wakes.lock().unwrap_or_else(PoisonError::into_inner);
-        wakes.push(Arc::clone(&wake));
-        wake
-    }
-
-    /// Tells tasks who is there and who decides.
-    fn set_team(&self, view: TeamView) {
-        let mut team = self.team();
-        if *team == view {
-            return;
-        }
-        *team = view;
-        drop(team);
-        let wakes = self.wakes.lock().unwrap_or_else(PoisonError::into_inner);
-        wakes.iter().for_each(|wake| wake.wake());
-    }
-
-    fn now(&self) -> Duration {
-        self.environment.clock.now()
-    }
-
-    fn record(&self, robot: &str, change: &'static str, message: String) {
-        self.environment.events.record(
-            self.environment.clock.now_ns(),
-            Event::Robot {
-                robot: robot.to_owned(),
-                change,
-                message,
-            },
-        );
     }
 }
 

@@ -5,8 +5,8 @@ use robot_network::task::{Bytes, EstimateRequest, LinkDatum, Step, TaskContent, 
 use system_model::task::{Placement, RobotIndex};
 use task_adaptation::Observation;
 
+use super::asking::{told, written};
 use super::change::Progress;
-use super::leading::{told, written};
 use super::rehearsal::Segment;
 use super::team::{News, Team};
 use super::wiring::hops;

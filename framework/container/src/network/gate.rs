@@ -8,7 +8,7 @@ use robot_network::{Fence, frame};
 use system_model::data_type::DataType;
 use system_model::specification::QueuePolicy;
 
-use super::Shared;
+use super::shared::Shared;
 use crate::port::{Newest, Receiver, Sender, connection};
 use crate::wake::Wake;
 

@@ -8,8 +8,8 @@ use system_model::specification::{
     ApplicationSpecification, ExecutionKind, PortReference, QueuePolicy,
 };
 
-use super::Shared;
 use super::gate::{Entrance, Gate};
+use super::shared::Shared;
 use crate::assembly::Assembly;
 use crate::library::PortDescription;
 use crate::port::{Newest, Receiver};

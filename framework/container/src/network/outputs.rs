@@ -9,7 +9,7 @@ use robot_network::frame::{self, Header};
 use robot_network::{Node, NodeError, Outlet};
 use system_model::specification::QueuePolicy;
 
-use super::Shared;
+use super::shared::Shared;
 use crate::library::PortDescription;
 use crate::port::{ConnectionId, Receiver, Sender, connection};
 use crate::wake::Wake;

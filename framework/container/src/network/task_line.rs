@@ -1,6 +1,6 @@
 //! A task that robots do together, in the network: what they tell each other, and data of its links.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
@@ -10,9 +10,9 @@ use robot_network::{Inlet, Node, NodeError};
 use system_model::data_type::DataType;
 use system_model::task::{RobotIndex, TaskSpecification};
 
-use super::Shared;
 use super::gate::{Entrance, Gate};
 use super::outputs::Ways;
+use super::shared::Shared;
 use crate::adaptation::{Hop, Passage, Teammates, description};
 use crate::port::{ConnectionId, Newest, Receiver, Sender};
 use crate::wake::Wake;
@@ -20,6 +20,9 @@ use crate::wake::Wake;
 /// Messages that may wait: a decision on a thousand candidates asks and answers no faster than it is
 /// worked off; what finds no room has no answer, which is a candidate out.
 const MESSAGES: usize = 1024;
+
+/// Foreign tasks that are put on record; more say nothing new.
+const FOREIGN_TASKS: usize = 64;
 
 /// The ways into inputs that links of tasks have now.
 #[derive(Default)]
@@ -55,6 +58,7 @@ impl TaskLine {
         let fingerprint = robot_network::task::fingerprint(&description(task));
         let (sender, messages) = bounded(MESSAGES);
         let wake = shared.wake_of_tasks();
+        shared.tasks().own.insert(fingerprint.clone());
         let (own, told, at) = (fingerprint.clone(), Arc::clone(&wake), Arc::clone(shared));
         let tasks = node.listen_to_tasks(&shared.robot, move |robot, message| match message {
             Ok(message) if message.task == own => {
@@ -62,7 +66,7 @@ impl TaskLine {
                 let _lost = sender.try_send((robot.to_owned(), message));
                 told.wake();
             }
-            Ok(_) => {}
+            Ok(message) => at.look_at_task(robot, &message.task),
             Err(error) => at.record(robot, "unintelligible", error.to_string()),
         })?;
         let (own, at) = (format!("{fingerprint}/"), Arc::clone(shared));
@@ -182,6 +186,36 @@ impl Passage for TaskLine {
 
     fn wake(&self) -> Arc<Wake> {
         Arc::clone(&self.wake)
+    }
+}
+
+/// Tasks that this container's robot does, and those of others that it has put on record.
+#[derive(Default)]
+pub(super) struct Tasks {
+    own: BTreeSet<String>,
+    foreign: BTreeSet<(String, String)>,
+}
+
+impl Shared {
+    fn tasks(&self) -> MutexGuard<'_, Tasks> {
+        self.tasks.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Puts on record that a robot does a task that is not one of this robot's, once all of these are
+    /// known: mostly one of the two has another edition of the file.
+    fn look_at_task(&self, robot: &str, task: &str) {
+        if self.team().decider.is_none() {
+            return;
+        }
+        let mut tasks = self.tasks();
+        let has_room = tasks.foreign.len() < FOREIGN_TASKS;
+        let foreign = (robot.to_owned(), task.to_owned());
+        if !tasks.own.contains(task) && has_room && tasks.foreign.insert(foreign) {
+            drop(tasks);
+            let message = "it does a task that is none of this robot's; where it should be the same, give \
+                           both robots the same task file";
+            self.record(robot, "foreign_task", message.to_owned());
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use robot_network::message::{Beat, FaultNotice};
 use robot_network::{Change, Heard, Leadership, Membership, Node, Role};
 
 use super::inputs::Listening;
-use super::{Shared, TeamView};
+use super::shared::{Shared, TeamView};
 use crate::event_log::Event;
 
 /// Beats within the limit of silence: one that is lost, or late by a busy machine, is no death.
