@@ -23,8 +23,13 @@ pub(super) fn read(root: &Node<'_>) -> Option<NetworkProfile> {
     let robot = robot.and_then(|value| name(&value));
     let tls = node.child("tls");
     let transport = if tls.is_some() { "tls" } else { "tcp" };
-    let listen = addresses(&node, "listen", transport);
-    let connect = addresses(&node, "connect", transport);
+    let listen = node.attribute("listen");
+    let connect = node.attribute("connect");
+    let leads_somewhere = listen.is_some() || connect.is_some();
+    let [listen, connect] = [listen, connect].map(|value| {
+        let value = value.as_ref();
+        value.map_or_else(Vec::new, |value| addresses(value, transport))
+    });
     let scouting = node.attribute("scouting");
     let scouting = scouting.is_some_and(|value| value.boolean().unwrap_or_default());
     let silence_limit = node.attribute("silence_limit");
@@ -36,7 +41,7 @@ pub(super) fn read(root: &Node<'_>) -> Option<NetworkProfile> {
     let connections: Vec<RemoteConnection> = connections.iter().filter_map(connection).collect();
     let tls = tls.map(|tls| (files(&tls), tls));
     let allowed = allowed(&node, tls.as_ref().map(|(_, node)| node), &connections);
-    if listen.is_empty() && connect.is_empty() && !scouting {
+    if !leads_somewhere && !scouting {
         node.error(
             "<network> leads nowhere",
             Some(format!(
@@ -174,10 +179,7 @@ fn name(value: &Value<'_>) -> Option<Located<String>> {
 }
 
 /// Addresses with blanks between them, all of one transport.
-fn addresses(node: &Node<'_>, attribute: &'static str, transport: &str) -> Vec<String> {
-    let Some(value) = node.attribute(attribute) else {
-        return Vec::new();
-    };
+fn addresses(value: &Value<'_>, transport: &str) -> Vec<String> {
     let addresses: Vec<&str> = value.as_str().split_whitespace().collect();
     let wrong = addresses
         .iter()
