@@ -102,10 +102,10 @@ impl Credentials {
             read(&security.authority)?,
         ];
         let chain = certificates(&security.certificate, &certificate)?;
-        let provider = Arc::new(ring::default_provider());
-        check_key(&provider, security, &chain, &private_key)?;
         let trusted = certificates(&security.authority, &authority)?;
-        check_trust(provider, security, &chain, trusted)?;
+        let provider = Arc::new(ring::default_provider());
+        check_trust(Arc::clone(&provider), security, &chain, trusted)?;
+        check_key(&provider, security, &chain, &private_key)?;
         Ok(Self {
             name: common_name(&security.certificate, &chain[0])?,
             certificate_file: security.certificate.clone(),
@@ -176,28 +176,6 @@ fn certificates(
     }
 }
 
-fn check_key(
-    provider: &CryptoProvider,
-    security: &NetworkSecurity,
-    chain: &[CertificateDer<'static>],
-    private_key: &[u8],
-) -> Result<(), BadCredentials> {
-    let bad = |reason: String| BadCredentials::Content {
-        file: security.private_key.clone(),
-        what: "private key",
-        reason,
-    };
-    let key = PrivateKeyDer::from_pem_slice(private_key);
-    let key = key.map_err(|error| bad(error.to_string()))?;
-    let key = provider.key_provider.load_private_key(key);
-    let key = key.map_err(|error| bad(error.to_string()))?;
-    let certified = CertifiedKey::new(chain.to_vec(), key);
-    certified.keys_match().map_err(|_| BadCredentials::Key {
-        key: security.private_key.clone(),
-        certificate: security.certificate.clone(),
-    })
-}
-
 /// As other robots do it: those that this one connects to, and those that connect to it.
 fn check_trust(
     provider: Arc<CryptoProvider>,
@@ -235,6 +213,28 @@ fn check_trust(
     };
     let believed = as_client.and_then(|()| as_server());
     believed.map_err(|error| untrusted(error.to_string()))
+}
+
+fn check_key(
+    provider: &CryptoProvider,
+    security: &NetworkSecurity,
+    chain: &[CertificateDer<'static>],
+    private_key: &[u8],
+) -> Result<(), BadCredentials> {
+    let bad = |reason: String| BadCredentials::Content {
+        file: security.private_key.clone(),
+        what: "private key",
+        reason,
+    };
+    let key = PrivateKeyDer::from_pem_slice(private_key);
+    let key = key.map_err(|error| bad(error.to_string()))?;
+    let key = provider.key_provider.load_private_key(key);
+    let key = key.map_err(|error| bad(error.to_string()))?;
+    let certified = CertifiedKey::new(chain.to_vec(), key);
+    certified.keys_match().map_err(|_| BadCredentials::Key {
+        key: security.private_key.clone(),
+        certificate: security.certificate.clone(),
+    })
 }
 
 fn common_name(file: &Path, certificate: &CertificateDer<'_>) -> Result<String, BadCredentials> {

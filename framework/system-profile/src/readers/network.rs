@@ -25,8 +25,13 @@ pub(super) fn read(root: &Node<'_>) -> Option<NetworkProfile> {
     let robot = robot.and_then(|value| name(&value, "robot"));
     let tls = node.child("tls");
     let transport = if tls.is_some() { "tls" } else { "tcp" };
-    let listen = addresses(&node, "listen", transport);
-    let connect = addresses(&node, "connect", transport);
+    let listen = node.attribute("listen");
+    let connect = node.attribute("connect");
+    let leads_somewhere = listen.is_some() || connect.is_some();
+    let [listen, connect] = [listen, connect].map(|value| {
+        let value = value.as_ref();
+        value.map_or_else(Vec::new, |value| addresses(value, transport))
+    });
     let scouting = node.attribute("scouting");
     let scouting = scouting.is_some_and(|value| value.boolean().unwrap_or_default());
     let silence_limit = node.attribute("silence_limit");
@@ -42,7 +47,7 @@ pub(super) fn read(root: &Node<'_>) -> Option<NetworkProfile> {
     let sending = fetches.iter().map(|it| (&it.robot, "sends a component"));
     let speaking = feeding.chain(sending);
     let allowed = allowed(&node, tls.as_ref().map(|(_, node)| node), speaking);
-    if listen.is_empty() && connect.is_empty() && !scouting {
+    if !leads_somewhere && !scouting {
         node.error(
             "<network> leads nowhere",
             Some(format!(
@@ -181,10 +186,7 @@ fn name(value: &Value<'_>, whose: &str) -> Option<Located<String>> {
 }
 
 /// Addresses with blanks between them, all of one transport.
-fn addresses(node: &Node<'_>, attribute: &'static str, transport: &str) -> Vec<String> {
-    let Some(value) = node.attribute(attribute) else {
-        return Vec::new();
-    };
+fn addresses(value: &Value<'_>, transport: &str) -> Vec<String> {
     let addresses: Vec<&str> = value.as_str().split_whitespace().collect();
     let wrong = addresses
         .iter()

@@ -187,7 +187,7 @@ impl Project {
         let message = problem.message.replace(&*folder, "");
         match problem.severity {
             Severity::Error => message,
-            Severity::Warning | Severity::Note => format!("warning: {message}"),
+            severity => format!("{}: {message}", severity.name()),
         }
     }
 }
