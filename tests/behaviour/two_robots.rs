@@ -130,6 +130,48 @@ fn in_smoke_the_task_goes_on_with_the_dehazer_of_the_other_robot() {
     }
 }
 
+/// What runs may lead across robots from the beginning.
+#[test]
+fn with_the_dehazer_of_the_other_robot_from_the_beginning_nothing_is_decided() {
+    let run = Application::new();
+    let shipped = |name: &str| {
+        let file = repository().join(name);
+        std::fs::read_to_string(file).expect("a shipped file")
+    };
+    let task = shipped("profiles/tasks/visual_servoing_two_robots.xml");
+    let dehazed = "<use component='Dehazer(SW)' robot='R2'/></running>";
+    let task = run.write("task.xml", task.replace("</running>", dehazed));
+    let task = task.display().to_string();
+    let rules = ROBOTS.map(|robot| {
+        let text = shipped(&format!("rules/{robot}.xml"));
+        let text = text.replace("../profiles/tasks/visual_servoing_two_robots.xml", &task);
+        let file = run.write(&format!("{robot}_rules.xml"), text);
+        file.display().to_string()
+    });
+    let file = run.folder().join("run.mcap");
+    let recording = file.display().to_string();
+    let folder = repository().join("profiles/applications");
+    let files = ROBOTS.map(|name| folder.join(format!("{name}.xml")));
+    let arguments = [
+        [
+            "--clock",
+            "simulated",
+            "--for",
+            "7s",
+            "--record",
+            &recording,
+        ],
+        ["--rules", &rules[0], "--rules", &rules[1], "--seed", "1"],
+    ]
+    .concat();
+    let outcome = run.run_together(&files, &arguments).ended_well();
+    assert_eq!(decisions(&outcome), Vec::<&Value>::new());
+    let tracked = tracked_on(&file, "/visual_servoing_r1/ssd_tracker/target");
+    assert!(tracked.len() > 60, "{}", tracked.len());
+    let worst = tracked.iter().map(|it| it.error).fold(0.0, f64::max);
+    assert!(worst < MOST_ERROR, "{worst}");
+}
+
 /// Where the shipped files of a test find what they refer to.
 pub(crate) fn search_paths() -> Vec<String> {
     let folders = ["profiles/components", "profiles/worlds"];

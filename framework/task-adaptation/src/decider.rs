@@ -112,7 +112,8 @@ impl Decider {
         effects
     }
 
-    /// Another robot decides, and this is what runs: a decision that is under way is overtaken.
+    /// Another robot decides, and this is what runs: a decision that is under way is overtaken. The
+    /// dwell time counts from its changes, too.
     pub fn follow(&mut self, running: Vec<Placement>, now: Duration) -> Vec<Effect> {
         let mut effects = Vec::new();
         if let Some(mut decision) = self.decision.take() {
@@ -122,9 +123,9 @@ impl Decider {
         if self.running != running {
             self.running = running;
             self.evaluated = None;
+            self.rests_since = Some(now);
         }
         self.bad = BadEvaluations::default();
-        self.rests_since = None;
         effects
     }
 

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use proptest::prelude::*;
 use shell::{DWELL, Shell, Step, on, task};
-use task_adaptation::{DeciderState, Observation, Outcome, Trigger};
+use task_adaptation::{DeciderState, Effect, Observation, Outcome, Trigger};
 
 fn steps() -> impl Strategy<Value = Step> {
     let number = prop_oneof![
@@ -107,6 +107,27 @@ fn what_is_asked_for_too_early_is_done_after_the_dwell_time() {
     shell.now = DWELL;
     shell.step(&Step::Wait(1));
     assert_eq!(shell.decider.state(), DeciderState::Synthesising);
+}
+
+#[test]
+fn who_has_followed_rests_after_a_change_of_the_one_who_decided() {
+    let mut shell = Shell::new();
+    let elsewhere = on(1, shell.decider.task());
+    for _ in 0..2 {
+        // He tells it again and again; it changes once.
+        let effects = shell.decider.follow(elsewhere.clone(), shell.now);
+        assert!(effects.is_empty(), "{effects:?}");
+    }
+    assert_eq!(shell.decider.running(), elsewhere);
+    shell.step(&Step::Request);
+    assert_eq!(shell.decider.deadline(), Some(DWELL));
+    shell.now = DWELL;
+    shell.step(&Step::Wait(1));
+    assert_eq!(shell.decider.state(), DeciderState::Synthesising);
+    let effects = shell.decider.follow(elsewhere.clone(), shell.now);
+    let is_overtaken = |effect: &Effect| matches!(effect, Effect::Decided(verdict) if verdict.outcome == Outcome::Overtaken);
+    assert!(effects.iter().any(is_overtaken), "{effects:?}");
+    assert_eq!(shell.decider.state(), DeciderState::Monitoring);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use system_model::task::RobotIndex;
+use system_model::task::{Placement, RobotIndex};
 
 use super::linking::LinkEnd;
 use super::local::LocalRobot;
@@ -63,6 +63,23 @@ impl LocalRobot {
                 Ok(Some((input, receiver)))
             }
             (None, None) => Ok(None),
+        }
+    }
+
+    /// Makes the connections from robot to robot of what runs at the beginning: no application has
+    /// them.
+    pub(super) fn connect_robots(&mut self, running: &[Placement], lane: &Lane) {
+        for hop in self.hops(running) {
+            if hop.from.robot == hop.to.robot {
+                continue;
+            }
+            let made = self.connect(&hop, lane).and_then(|end| match end {
+                Some((input, receiver)) => self.plug_in(&input, Some(receiver), lane).map(drop),
+                None => Ok(()),
+            });
+            if let Err(how) = made {
+                self.notice(&how);
+            }
         }
     }
 

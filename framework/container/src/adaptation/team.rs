@@ -17,6 +17,10 @@ use super::passage::Teammates;
 use crate::lane::Lane;
 use crate::wake::Wake;
 
+/// Messages that are taken before this robot's own work has its turn: answers to all questions of a
+/// decision on the twelve candidates of two robots many times over.
+const MESSAGES_AT_ONCE: usize = 256;
+
 /// A question or an order of the decider.
 #[derive(Debug, Clone, Copy)]
 pub struct Request<'decider> {
@@ -61,6 +65,8 @@ pub struct Team {
     /// What others have was different when the task was changed last.
     pub(super) has_changed: bool,
     pub(super) told_at: Option<Duration>,
+    /// Whether connections are made that lead from robot to robot from the beginning.
+    has_begun: bool,
 }
 
 impl Team {
@@ -79,6 +85,7 @@ impl Team {
             rehearsing: None,
             has_changed: true,
             told_at: None,
+            has_begun: false,
             own,
         }
     }
@@ -116,6 +123,9 @@ impl Team {
     /// Takes what others have told, and does what they ask for. Runs code of components.
     pub fn attend(&mut self, running: &[Placement], lane: &Lane) -> News {
         let mut news = News::default();
+        if !std::mem::replace(&mut self.has_begun, true) {
+            self.own.connect_robots(&self.actual, lane);
+        }
         if self.decides() && !self.is_changing() {
             self.actual = running.to_vec();
         }
@@ -126,7 +136,10 @@ impl Team {
         if mates != self.mates {
             self.meet(mates, lane);
         }
-        while let Some((robot, message)) = self.own.passage.as_mut().and_then(|it| it.heard()) {
+        for _ in 0..MESSAGES_AT_ONCE {
+            let Some((robot, message)) = self.own.passage.as_mut().and_then(|it| it.heard()) else {
+                break;
+            };
             self.take(robot, message, &mut news, lane);
         }
         if let Some(running) = &news.running {

@@ -139,7 +139,10 @@ impl Shell {
             assert!(self.now - *last >= DWELL, "{last:?} {:?}", self.now);
         }
         self.changes.push(self.now);
-        self.lost = false;
+        // What came to run may have lost an instance while it was brought about.
+        let task = self.decider.task();
+        let mut running = self.decider.running().iter();
+        self.lost = running.any(|it| task.instance(*it).is_none());
     }
 
     pub fn step(&mut self, step: &Step) {
